@@ -1,0 +1,219 @@
+//! What an engine must know of a system, and what a run must know of an engine.
+//!
+//! A system is an index-1 DAE for coordinates q, velocities v and multipliers λ, with discrete
+//! modes that change only at events:
+//!
+//! ```text
+//! q̇ − v                                = 0
+//! v̇ + M⁻¹ (Φ_qᵀ λ − Q(q, v, t; modes))  = 0
+//! Φ_q v̇ − γ(q, v, t)                    = 0
+//! ```
+//!
+//! Between two events the modes stand still and everything here is smooth, but for the power law
+//! that [`Watch::power`] tells of.
+
+use crate::scalar::Scalar;
+use std::error::Error;
+
+/// Why a system could not be evaluated.
+#[derive(Debug, thiserror::Error)]
+pub enum Fault {
+    /// The state is out of reach of the formulas; a state nearer to the last good one may do.
+    #[error("{0}")]
+    TryShorterStep(String),
+    /// No step length will help.
+    #[error(transparent)]
+    Fatal(Box<dyn Error + Send + Sync>),
+}
+
+/// Cosine and sine of one turning frame of the system.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Turn<S> {
+    /// Cosine of the frame's angle.
+    pub cos: S,
+    /// Sine of the frame's angle.
+    pub sin: S,
+}
+
+/// A state at which a system is evaluated.
+#[derive(Debug, Clone, Copy)]
+pub struct State<'a, S> {
+    /// Time (s).
+    pub time: S,
+    /// Coordinates, n of them (m, rad).
+    pub q: &'a [S],
+    /// Velocities, n of them (m/s, rad/s).
+    pub v: &'a [S],
+    /// Cosines and sines of the turning frames, where an engine carries them along; `None` has
+    /// the system compute them from the angles.
+    pub turns: Option<&'a [Turn<S>]>,
+}
+
+/// The way through zero at which an event function is an event.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Direction {
+    /// Not watched in the present mode.
+    Off,
+    /// From below zero to above.
+    Rising,
+    /// From above zero to below.
+    Falling,
+}
+
+/// How an event function is to be watched in the present mode.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Watch {
+    /// The way through zero that counts.
+    pub direction: Direction,
+    /// The solution is analytic in |g|^power beside the zero of the event function g, on the
+    /// side where the function is positive: ½ for Hertz contact, 1 where nothing is lost.
+    pub power: f64,
+}
+
+/// A mechanical system, as an engine sees it.
+pub trait System<S: Scalar> {
+    /// Number n of coordinates, and of velocities.
+    fn coordinates(&self) -> usize;
+
+    /// Number m of multipliers.
+    fn multipliers(&self) -> usize;
+
+    /// Number of integrals that are carried along with the trajectory (works, dissipation).
+    fn integrals(&self) -> usize;
+
+    /// Typical sizes of the n coordinates (m, rad) and of the n velocities (m/s, rad/s).
+    fn scales(&self) -> (&[f64], &[f64]);
+
+    /// Evaluates the system at a state; the functions named `…` after this one answer for it.
+    fn evaluate(&mut self, state: State<'_, S>) -> Result<(), Fault>;
+
+    /// v̇ at the state last evaluated (m/s², rad/s²).
+    fn accelerations(&self) -> &[S];
+
+    /// λ at the state last evaluated (N, N m).
+    fn lambda(&self) -> &[S];
+
+    /// Time derivatives of the integrals at the state last evaluated (W).
+    fn powers(&self) -> &[S];
+
+    /// How each event function is watched in the present modes; their number never changes.
+    fn watches(&self) -> &[Watch];
+
+    /// The event functions at a state, scaled to order one; no accelerations are solved for.
+    /// The value of one that is `Off` means nothing.
+    fn event_values(&mut self, state: State<'_, S>, values: &mut [S]) -> Result<(), Fault>;
+
+    /// Time derivative of event function `k` at the state last evaluated (1/s).
+    fn event_rate(&self, k: usize) -> S;
+
+    /// Moves q and v onto the constraints by the smallest mass-weighted change. Returns the
+    /// largest distance (m) by which a constraint was off.
+    fn project(&mut self, time: S, q: &mut [S], v: &mut [S]) -> Result<f64, Fault>;
+
+    /// Number of turning frames.
+    fn turns(&self) -> usize;
+
+    /// Angles (rad) of the turning frames.
+    fn turn_angles(&self, time: S, q: &[S], angles: &mut [S]);
+
+    /// Angular rates (rad/s) of the turning frames.
+    fn turn_rates(&self, time: S, v: &[S], rates: &mut [S]);
+}
+
+/// A system that an implicit engine can solve: y = (q, v, λ) in double precision.
+pub trait Dae: System<f64> {
+    /// Residual of the three rows of the module's header at (t, y, ẏ).
+    fn residual(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        yp: &[f64],
+        residual: &mut [f64],
+    ) -> Result<(), Fault>;
+
+    /// ∂F/∂y + c_j ∂F/∂ẏ, written into a zeroed matrix.
+    fn jacobian(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        yp: &[f64],
+        cj: f64,
+        jacobian: &mut nalgebra::DMatrixViewMut<'_, f64>,
+    ) -> Result<(), Fault>;
+}
+
+/// Where a step ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Advance {
+    /// At a time of the engine's choice, or at the end asked for.
+    Stepped,
+    /// At an event: [`Engine::fired`] tells which functions passed zero in their direction.
+    Event,
+}
+
+/// q, v and the integrals at one time.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Snapshot<S> {
+    /// Time (s).
+    pub time: S,
+    /// Coordinates (m, rad).
+    pub q: Vec<S>,
+    /// Velocities (m/s, rad/s).
+    pub v: Vec<S>,
+    /// Integrals since the run began (J).
+    pub integrals: Vec<S>,
+}
+
+impl<S: Scalar> Snapshot<S> {
+    /// Space for n coordinates and as many integrals as asked for, all zero.
+    pub fn new(coordinates: usize, integrals: usize) -> Self {
+        Snapshot {
+            time: S::zero(),
+            q: vec![S::zero(); coordinates],
+            v: vec![S::zero(); coordinates],
+            integrals: vec![S::zero(); integrals],
+        }
+    }
+}
+
+/// A count that an engine keeps of its work, with the name it has in result files.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Count {
+    /// Name, in snake case: `steps`, `residual_evaluations`.
+    pub name: &'static str,
+    /// How many, since the engine was made.
+    pub value: u64,
+}
+
+/// Carries a system from one event to the next.
+pub trait Engine<S: Scalar> {
+    /// The system it solves.
+    type System: System<S>;
+    /// What can stop it.
+    type Error: Error + Send + Sync + 'static;
+
+    /// The system; its modes may be changed before a restart, and only then.
+    fn system(&mut self) -> &mut Self::System;
+
+    /// Begins anew at `now`, whose q and v satisfy the constraints, in the system's present modes;
+    /// the integrals go on from those given.
+    fn restart(&mut self, now: &Snapshot<S>) -> Result<(), Self::Error>;
+
+    /// One step, never beyond `end` (s): to a time of the engine's choice or to the first event.
+    fn step(&mut self, end: S) -> Result<Advance, Self::Error>;
+
+    /// State at the end of the last step, or of the restart.
+    fn now(&self) -> &Snapshot<S>;
+
+    /// Time (s) at which the last step began.
+    fn began(&self) -> S;
+
+    /// State at a time within the last step, to the accuracy of the engine.
+    fn within(&mut self, time: S, at: &mut Snapshot<S>) -> Result<(), Self::Error>;
+
+    /// Which event functions passed zero at the end of the last step; all false if none did.
+    fn fired(&self) -> &[bool];
+
+    /// What the engine counted so far.
+    fn counts(&self) -> Vec<Count>;
+}

@@ -1,0 +1,3 @@
+//! The checked mechanism as a system of equations.
+mod observation;
+pub use observation::*;

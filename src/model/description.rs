@@ -1,0 +1,220 @@
+//! A mechanism as a case describes it, before anything is checked.
+//!
+//! Numbers are decimals as written; names are words. [`Model::new`](super::Model::new) checks a
+//! description and reads its numbers into an arithmetic.
+
+use crate::scalar::Decimal;
+
+/// A mechanism, unchecked. The order of each list is the order of the case file.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Description {
+    /// Points of the ground, in the fixed frame.
+    pub ground: Vec<NamedPoint>,
+    /// Bodies.
+    pub bodies: Vec<BodyDescription>,
+    /// Joints.
+    pub joints: Vec<JointDescription>,
+    /// Drives.
+    pub drives: Vec<DriveDescription>,
+    /// Loads.
+    pub loads: Vec<LoadDescription>,
+    /// Rough or fixed start poses.
+    pub start: Vec<StartDescription>,
+}
+
+/// A named point of a body or of the ground.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NamedPoint {
+    /// Name, `A` in `crank.A`.
+    pub name: String,
+    /// Coordinates (m): in the fixed frame for the ground, else in the body's frame, whose origin
+    /// is the mass centre.
+    pub at: [Decimal; 2],
+}
+
+/// A rigid body.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BodyDescription {
+    /// Name.
+    pub name: String,
+    /// Mass (kg).
+    pub mass: Decimal,
+    /// Moment of inertia about the mass centre (kg m²).
+    pub inertia: Decimal,
+    /// Points, in the body's frame.
+    pub points: Vec<NamedPoint>,
+}
+
+/// A joint between two points, written `body.point`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct JointDescription {
+    /// Name.
+    pub name: String,
+    /// What kind of joint.
+    pub kind: JointKind,
+    /// The points it joins: bearing on the first, journal on the second.
+    pub between: [String; 2],
+}
+
+/// Kinds of joint.
+#[derive(Debug, Clone, PartialEq)]
+pub enum JointKind {
+    /// Two points stay together, or, with a clearance, nearly so.
+    Revolute {
+        /// Left out: an ideal joint.
+        clearance: Option<ClearanceDescription>,
+    },
+}
+
+/// A clearance between journal and bearing.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ClearanceDescription {
+    /// Radius of the bearing (m).
+    pub bearing_radius: Decimal,
+    /// Radial clearance c (m).
+    pub radial: Decimal,
+    /// Law of the normal force.
+    pub normal: NormalDescription,
+    /// Whether a contact force may pull.
+    pub tension: Tension,
+    /// Smallest impact rate that the damping is scaled by (m/s).
+    pub minimum_impact_rate: Decimal,
+    /// Law of the tangential force; `None` without friction.
+    pub friction: Option<FrictionDescription>,
+}
+
+/// What happens where a contact law gives a tensile force (ruling `tension`).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Tension {
+    /// The law as printed, which may pull.
+    Keep,
+    /// No force there.
+    Cut,
+}
+
+/// A normal-force law and its parameters.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NormalDescription {
+    /// Which law, by its name in case files.
+    pub law: NormalLawName,
+    /// Restitution c_e in (0, 1]; the Hertz law has none.
+    pub restitution: Option<Decimal>,
+    /// Generalized stiffness.
+    pub stiffness: StiffnessDescription,
+    /// Young's modulus E of journal and bearing (Pa), for the Hertz stiffnesses.
+    pub young: Option<Decimal>,
+    /// Poisson's ratio ν of journal and bearing.
+    pub poisson: Option<Decimal>,
+    /// Exponent n of the penetration.
+    pub exponent: Decimal,
+}
+
+/// Names of the normal-force laws.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum NormalLawName {
+    /// `hertz`: elastic.
+    Hertz,
+    /// `lankarani-nikravesh`: the paper's.
+    LankaraniNikravesh,
+}
+
+impl NormalLawName {
+    /// Every law, with its name in case files.
+    pub const ALL: [(&'static str, NormalLawName); 2] = [
+        ("lankarani-nikravesh", NormalLawName::LankaraniNikravesh),
+        ("hertz", NormalLawName::Hertz),
+    ];
+
+    /// The name in case files.
+    pub fn name(self) -> &'static str {
+        Self::ALL.iter().find(|(_, law)| *law == self).map_or("", |(name, _)| name)
+    }
+}
+
+/// Where the stiffness K of a contact comes from.
+#[derive(Debug, Clone, PartialEq)]
+pub enum StiffnessDescription {
+    /// `"hertz-printed"`: the paper's eq. 5, with R_b R_j / (R_b + R_j).
+    HertzPrinted,
+    /// `"hertz-internal"`: with R_b R_j / (R_b − R_j).
+    HertzInternal,
+    /// K itself (N/mⁿ).
+    Number(Decimal),
+}
+
+/// A friction law and its parameters.
+#[derive(Debug, Clone, PartialEq)]
+pub enum FrictionDescription {
+    /// `ambrosio`: the paper's eq. 10 and 11.
+    Ambrosio {
+        /// Friction coefficient c_f; zero means no friction.
+        coefficient: Decimal,
+        /// Slip below which there is no friction (m/s).
+        v0: Decimal,
+        /// Slip above which friction is full (m/s).
+        v1: Decimal,
+    },
+}
+
+/// A drive.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DriveDescription {
+    /// Name.
+    pub name: String,
+    /// What it prescribes.
+    pub kind: DriveKind,
+    /// Name of the joint it sits on.
+    pub joint: String,
+}
+
+/// Kinds of drive.
+#[derive(Debug, Clone, PartialEq)]
+pub enum DriveKind {
+    /// The second body of the joint turns relative to the first at a constant rate.
+    Speed {
+        /// Speed (revolutions a minute).
+        speed_rpm: Decimal,
+        /// Relative angle at t = 0 (rad).
+        angle: Decimal,
+    },
+}
+
+/// A load.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LoadDescription {
+    /// Name.
+    pub name: String,
+    /// What it does.
+    pub kind: LoadKind,
+}
+
+/// Kinds of load.
+#[derive(Debug, Clone, PartialEq)]
+pub enum LoadKind {
+    /// A uniform field of gravity.
+    Gravity {
+        /// Acceleration of free fall (m/s²), fixed frame.
+        acceleration: [Decimal; 2],
+    },
+}
+
+/// Where a body starts. Keys left out are solved for.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct StartDescription {
+    /// Name of the body.
+    pub body: String,
+    /// Mass centre (m).
+    pub x: Option<Decimal>,
+    /// Mass centre (m).
+    pub y: Option<Decimal>,
+    /// Angle (rad).
+    pub angle: Option<Decimal>,
+    /// Velocity of the mass centre (m/s).
+    pub velocity_x: Option<Decimal>,
+    /// Velocity of the mass centre (m/s).
+    pub velocity_y: Option<Decimal>,
+    /// Angular rate (rad/s).
+    pub angular_velocity: Option<Decimal>,
+    /// Whether the keys given hold exactly; else they are rough and choose the branch.
+    pub fixed: bool,
+}

@@ -1,0 +1,5 @@
+//! The checked mechanism.
+mod complaint;
+mod description;
+pub use complaint::*;
+pub use description::*;

@@ -1,0 +1,3 @@
+//! The loop over segments.
+mod recorder;
+pub use recorder::*;

@@ -1,0 +1,111 @@
+//! The number type of the physics.
+//!
+//! Kinematics, laws, joints and accelerations are written once, generic in [`Scalar`]; its three
+//! kinds are [`f64`] for every ordinary run, dual numbers for exact derivatives, and 71-digit
+//! floats for trajectories that can be called true.
+
+mod decimal;
+mod double;
+mod dual;
+mod octuple;
+
+pub use decimal::{Decimal, NotADecimal};
+pub use dual::Dual64;
+pub use octuple::{F256, rounded};
+
+use std::fmt::Debug;
+use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
+
+/// A real number in which the mechanics can be evaluated.
+///
+/// The order is that of the real part; a comparison never looks at a derivative.
+pub trait Scalar:
+    Copy
+    + Debug
+    + Send
+    + Sync
+    + 'static
+    + PartialEq
+    + PartialOrd
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+    + AddAssign
+    + SubAssign
+    + MulAssign
+{
+    /// Distance from one to the next larger number of this kind.
+    const EPSILON: f64;
+
+    /// The number `x`, exactly.
+    fn from_f64(x: f64) -> Self;
+
+    /// The nearest double (of the real part).
+    fn to_f64(self) -> f64;
+
+    /// The number a finite decimal literal means, rounded once; `None` if it is not one.
+    fn parse(literal: &str) -> Option<Self>;
+
+    /// π in this arithmetic.
+    fn pi() -> Self;
+
+    /// Square root.
+    fn sqrt(self) -> Self;
+
+    /// Sine and cosine of an angle (rad).
+    fn sin_cos(self) -> (Self, Self);
+
+    /// Exponential function.
+    fn exp(self) -> Self;
+
+    /// Natural logarithm.
+    fn ln(self) -> Self;
+
+    /// `self` to a real power; the base must be positive.
+    fn powf(self, exponent: Self) -> Self;
+
+    /// Hyperbolic tangent.
+    fn tanh(self) -> Self;
+
+    /// One over the square root.
+    fn rsqrt(self) -> Self {
+        Self::one() / self.sqrt()
+    }
+
+    /// Zero.
+    fn zero() -> Self {
+        Self::from_f64(0.0)
+    }
+
+    /// One.
+    fn one() -> Self {
+        Self::from_f64(1.0)
+    }
+
+    /// The quotient of two integers below 2⁵³, rounded once.
+    fn ratio(numerator: i64, denominator: i64) -> Self {
+        Self::from_f64(numerator as f64) / Self::from_f64(denominator as f64)
+    }
+
+    /// Magnitude.
+    fn abs(self) -> Self {
+        if self < Self::zero() { -self } else { self }
+    }
+
+    /// The larger of two numbers.
+    fn max(self, other: Self) -> Self {
+        if self < other { other } else { self }
+    }
+
+    /// The smaller of two numbers.
+    fn min(self, other: Self) -> Self {
+        if other < self { other } else { self }
+    }
+
+    /// Whether the number is neither infinite nor undefined.
+    fn is_finite(self) -> bool {
+        self.to_f64().is_finite()
+    }
+}
