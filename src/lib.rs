@@ -4,7 +4,13 @@
 
 pub mod scalar;
 pub mod plane;
-pub mod model;
+pub mod linear;
 pub mod dae;
+pub mod contact;
+pub mod friction;
+pub mod joint;
+pub mod clearance;
+pub mod load;
+pub mod model;
 pub mod mechanism;
 pub mod run;

@@ -1,3 +1,190 @@
-//! The checked mechanism as a system of equations.
+//! The checked mechanism as a system of equations: residual, Jacobian, event functions,
+//! accelerations, consistent start.
+
+mod balance;
+mod dae;
+mod layout;
 mod observation;
+mod observe;
+mod place;
+mod project;
+mod start;
+mod system;
+
 pub use observation::*;
+pub use system::{ContactRates, SingularPosition};
+
+use crate::clearance::{ContactForce, EventSlot, Gap, GapRates, Mode};
+use crate::dae::{Snapshot, Watch};
+use crate::model::{Complaint, Model};
+use crate::plane::{Motion, Pose, Vector, Wrench};
+use crate::scalar::Scalar;
+use layout::{Layout, Role};
+
+/// A mechanism with its modes, evaluated at one state at a time.
+#[derive(Debug, Clone)]
+pub struct Mechanism<S> {
+    model: Model<S>,
+    layout: Layout<S>,
+    /// One over mass and inertia, by place in v.
+    inverse_masses: Vec<S>,
+    modes: Vec<Mode<S>>,
+    slots: Vec<(usize, EventSlot)>,
+    watches: Vec<Watch>,
+    start: Snapshot<S>,
+    start_energy: S,
+    coordinate_scales: Vec<f64>,
+    velocity_scales: Vec<f64>,
+    length: f64,
+    now: Evaluation<S>,
+}
+
+/// A contact as it was evaluated.
+#[derive(Debug, Clone, Copy)]
+struct Touch<S> {
+    gap: Gap<S>,
+    rates: GapRates<S>,
+    force: ContactForce<S>,
+}
+
+/// Everything known at the state last evaluated. Lists by body have the ground first.
+#[derive(Debug, Clone)]
+struct Evaluation<S> {
+    time: S,
+    poses: Vec<Pose<S>>,
+    motions: Vec<Motion<S>>,
+    accelerations: Vec<Motion<S>>,
+    /// Loads, contact forces and, once solved, joint forces, by body.
+    wrenches: Vec<Wrench<S>>,
+    /// By clearance; `None` in flight.
+    touches: Vec<Option<Touch<S>>>,
+    /// v̇ by place in v.
+    v_dot: Vec<S>,
+    lambda: Vec<S>,
+    powers: Vec<S>,
+    /// Φ_q M⁻¹ Φ_qᵀ, later its factors.
+    matrix: Vec<S>,
+    /// Force and torque of each driven body's joint and drive on that body.
+    driving: Vec<(Vector<S>, S)>,
+}
+
+impl<S: Scalar> Evaluation<S> {
+    fn new(model: &Model<S>, layout: &Layout<S>) -> Self {
+        let bodies = model.masses().len();
+        let clearances = model.clearances().len();
+        Evaluation {
+            time: S::zero(),
+            poses: vec![Pose::fixed(); bodies],
+            motions: vec![Motion::rest(); bodies],
+            accelerations: vec![Motion::rest(); bodies],
+            wrenches: vec![Wrench::none(); bodies],
+            touches: vec![None; clearances],
+            v_dot: vec![S::zero(); layout.coordinates],
+            lambda: vec![S::zero(); layout.rows],
+            powers: vec![S::zero(); 1 + clearances],
+            matrix: vec![S::zero(); layout.rows * layout.rows],
+            driving: vec![(Vector::zero(), S::zero()); layout.driven.len()],
+        }
+    }
+}
+
+impl<S: Scalar> Mechanism<S> {
+    /// Forms the equations of a model and assembles its start.
+    ///
+    /// # Errors
+    /// Joints that hold too much, do not close, or stand in a singular position.
+    pub fn new(model: Model<S>) -> Result<Self, Vec<Complaint>> {
+        let layout = Layout::new(&model)?;
+        let mut inverse_masses = Vec::with_capacity(layout.coordinates);
+        for (body, role) in layout.roles.iter().enumerate() {
+            if let Role::Free(_) = role {
+                let (mass, inertia) = (model.masses()[body], model.inertias()[body]);
+                let inverse = S::one() / mass;
+                inverse_masses.extend([inverse, inverse, S::one() / inertia]);
+            }
+        }
+        let slots = (model.clearances().iter().enumerate())
+            .flat_map(|(k, clearance)| {
+                clearance.event_slots().into_iter().map(move |slot| (k, slot))
+            })
+            .collect();
+        let mut mechanism = Mechanism {
+            now: Evaluation::new(&model, &layout),
+            start: Snapshot::new(layout.coordinates, 1 + model.clearances().len()),
+            start_energy: S::zero(),
+            modes: vec![Mode::Flight; model.clearances().len()],
+            slots,
+            watches: Vec::new(),
+            inverse_masses,
+            coordinate_scales: Vec::new(),
+            velocity_scales: Vec::new(),
+            length: 1.0,
+            model,
+            layout,
+        };
+        mechanism.assemble()?;
+        Ok(mechanism)
+    }
+
+    /// The model.
+    pub fn model(&self) -> &Model<S> {
+        &self.model
+    }
+
+    /// The assembled start: coordinates and velocities at t = 0, integrals zero.
+    pub fn start(&self) -> &Snapshot<S> {
+        &self.start
+    }
+
+    /// Mode of each clearance.
+    pub fn modes(&self) -> &[Mode<S>] {
+        &self.modes
+    }
+
+    /// Number of freedoms left by the ideal joints and drives (paper, eq. 16, less the driven
+    /// bodies).
+    pub fn freedoms(&self) -> usize {
+        self.layout.coordinates - self.layout.rows
+    }
+
+    /// Whether a body moves as the drives prescribe; bodies count from 0, without the ground.
+    pub fn is_driven(&self, body: usize) -> bool {
+        self.layout.roles[body + 1] == Role::Driven
+    }
+
+    /// Characteristic length of the mechanism (m): the largest distance of a joint's point from
+    /// its body's mass centre.
+    pub fn length(&self) -> f64 {
+        self.length
+    }
+
+    /// What event function `slot` watches: the clearance and what of it.
+    pub fn slot(&self, slot: usize) -> (usize, EventSlot) {
+        self.slots[slot]
+    }
+
+    /// Sets the mode of a clearance.
+    pub fn set_mode(&mut self, clearance: usize, mode: Mode<S>) {
+        self.modes[clearance] = mode;
+        self.watch();
+    }
+
+    /// Brings the watches in line with the modes.
+    fn watch(&mut self) {
+        let (model, modes) = (&self.model, &self.modes);
+        let watch =
+            |(k, slot): &(usize, EventSlot)| model.clearances()[*k].watch(&modes[*k], *slot);
+        self.watches = self.slots.iter().map(watch).collect();
+    }
+
+    /// Switches the mode of the clearance that event function `slot` belongs to, as the state
+    /// last evaluated has it.
+    pub fn switch(&mut self, slot: usize) {
+        let (k, what) = self.slots[slot];
+        let clearance = &self.model.clearances()[k];
+        let gap = clearance.gap(&self.now.poses, &self.now.motions);
+        let mode =
+            clearance.switched(&self.modes[k], what, || clearance.rates(&gap, &self.now.motions));
+        self.set_mode(k, mode);
+    }
+}

@@ -1,5 +1,275 @@
 //! The checked mechanism.
+//!
+//! A [`Description`] becomes a [`Model`] in one place, which checks everything and collects every
+//! complaint. After that bodies and joints are indices, parameters are in range, and nothing
+//! below checks again.
+
 mod complaint;
 mod description;
-pub use complaint::*;
+
+pub use complaint::{Complaint, KeyPath, did_you_mean};
 pub use description::*;
+
+use crate::clearance::Clearance;
+use crate::contact::{NormalLaw, hertz, lankarani_nikravesh, stiffness};
+use crate::friction::Ambrosio;
+use crate::joint::{Pair, SpeedDrive};
+use crate::load::{Gravity, Load};
+use crate::plane::Vector;
+use crate::scalar::{Decimal, Scalar};
+
+/// Index of the ground among the bodies.
+pub const GROUND: usize = 0;
+
+/// A joint of a model.
+#[derive(Debug, Clone)]
+pub struct Joint<S> {
+    /// Its points.
+    pub pair: Pair<S>,
+    /// Index of its clearance; `None` for an ideal joint.
+    pub clearance: Option<usize>,
+}
+
+/// A drive of a model.
+#[derive(Debug, Clone, Copy)]
+pub struct Drive<S> {
+    /// Index of the joint it sits on.
+    pub joint: usize,
+    /// What it prescribes.
+    pub law: SpeedDrive<S>,
+}
+
+/// Where a body starts: the keys a case names.
+#[derive(Debug, Clone, Copy)]
+pub struct Start<S> {
+    /// x, y (m) and angle (rad).
+    pub coordinates: [Option<S>; 3],
+    /// Their rates (m/s, rad/s).
+    pub velocities: [Option<S>; 3],
+    /// Whether they hold exactly.
+    pub fixed: bool,
+}
+
+/// Names of a model's parts, each list in the order of the case file.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Names {
+    /// Bodies, without the ground.
+    pub bodies: Vec<String>,
+    /// Joints.
+    pub joints: Vec<String>,
+    /// Clearances, by the name of their joint.
+    pub clearances: Vec<String>,
+    /// Drives.
+    pub drives: Vec<String>,
+}
+
+/// A mechanism whose every number is in range and whose every reference leads somewhere.
+#[derive(Debug, Clone)]
+pub struct Model<S> {
+    names: Names,
+    masses: Vec<S>,
+    inertias: Vec<S>,
+    joints: Vec<Joint<S>>,
+    clearances: Vec<Clearance<S>>,
+    drives: Vec<Drive<S>>,
+    loads: Vec<Load<S>>,
+    starts: Vec<Start<S>>,
+}
+
+impl<S: Scalar> Model<S> {
+    /// Reads a description in the arithmetic `S`.
+    ///
+    /// # Errors
+    /// Every complaint there is, each with its key.
+    pub fn new(description: &Description) -> Result<Model<S>, Vec<Complaint>> {
+        let names = names(description);
+        let bodies = || description.bodies.iter();
+        let with_ground = |of: fn(&BodyDescription) -> &Decimal| {
+            std::iter::once(S::zero()).chain(bodies().map(|body| of(body).value())).collect()
+        };
+        let mut joints = Vec::new();
+        let mut clearances = Vec::new();
+        for joint in &description.joints {
+            let pair = pair(description, joint);
+            let JointKind::Revolute { clearance } = &joint.kind;
+            let clearance = clearance.as_ref().map(|clearance| {
+                clearances.push(read_clearance(pair, clearance));
+                clearances.len() - 1
+            });
+            joints.push(Joint { pair, clearance });
+        }
+        let drives = description.drives.iter().map(|drive| {
+            let joint = position(&names.joints, &drive.joint);
+            let Pair { i, j, .. } = joints[joint].pair;
+            let DriveKind::Speed { speed_rpm, angle } = &drive.kind;
+            Drive { joint, law: SpeedDrive::new(i, j, speed_rpm, angle) }
+        });
+        let loads = description.loads.iter().map(|load| match &load.kind {
+            LoadKind::Gravity { acceleration } => {
+                Load::Gravity(Gravity { acceleration: vector(acceleration) })
+            }
+        });
+        Ok(Model {
+            masses: with_ground(|body| &body.mass),
+            inertias: with_ground(|body| &body.inertia),
+            drives: drives.collect(),
+            loads: loads.collect(),
+            starts: bodies().map(|body| start(description, &body.name)).collect(),
+            joints,
+            clearances,
+            names,
+        })
+    }
+
+    /// Names of the parts.
+    pub fn names(&self) -> &Names {
+        &self.names
+    }
+
+    /// Masses by body (kg); that of the ground counts as zero.
+    pub fn masses(&self) -> &[S] {
+        &self.masses
+    }
+
+    /// Moments of inertia by body about the mass centre (kg m²).
+    pub fn inertias(&self) -> &[S] {
+        &self.inertias
+    }
+
+    /// Joints.
+    pub fn joints(&self) -> &[Joint<S>] {
+        &self.joints
+    }
+
+    /// Clearances, in the order of their joints.
+    pub fn clearances(&self) -> &[Clearance<S>] {
+        &self.clearances
+    }
+
+    /// Drives.
+    pub fn drives(&self) -> &[Drive<S>] {
+        &self.drives
+    }
+
+    /// Loads.
+    pub fn loads(&self) -> &[Load<S>] {
+        &self.loads
+    }
+
+    /// Start of each body, the ground left out.
+    pub fn starts(&self) -> &[Start<S>] {
+        &self.starts
+    }
+
+    /// Name of a body by its index, `ground` among them.
+    pub fn body_name(&self, body: usize) -> &str {
+        if body == GROUND { "ground" } else { &self.names.bodies[body - 1] }
+    }
+}
+
+fn names(description: &Description) -> Names {
+    let has_clearance = |joint: &&JointDescription| {
+        matches!(joint.kind, JointKind::Revolute { clearance: Some(_) })
+    };
+    let joints = || description.joints.iter();
+    Names {
+        bodies: description.bodies.iter().map(|body| body.name.clone()).collect(),
+        joints: joints().map(|joint| joint.name.clone()).collect(),
+        clearances: joints().filter(has_clearance).map(|joint| joint.name.clone()).collect(),
+        drives: description.drives.iter().map(|drive| drive.name.clone()).collect(),
+    }
+}
+
+fn vector<S: Scalar>(at: &[Decimal; 2]) -> Vector<S> {
+    Vector::new(at[0].value(), at[1].value())
+}
+
+/// Place of a name that the check has found to be there.
+fn position(names: &[String], name: &str) -> usize {
+    let found = names.iter().position(|known| known == name);
+    assert!(found.is_some(), "the check lets no unknown name pass, but \"{name}\" came through");
+    found.unwrap_or(0)
+}
+
+/// Index and place of a point written `body.point`.
+fn point<S: Scalar>(description: &Description, written: &str) -> (usize, Vector<S>) {
+    let (body, name) = written.split_once('.').unwrap_or((written, ""));
+    let (index, points) = match body {
+        "ground" => (GROUND, &description.ground),
+        _ => {
+            let index = description.bodies.iter().position(|b| b.name == body);
+            let index = index.unwrap_or_default();
+            (index + 1, &description.bodies[index].points)
+        }
+    };
+    let at = points.iter().find(|point| point.name == name);
+    assert!(at.is_some(), "the check lets no unknown point pass, but \"{written}\" came through");
+    (index, at.map_or(Vector::zero(), |point| vector(&point.at)))
+}
+
+fn pair<S: Scalar>(description: &Description, joint: &JointDescription) -> Pair<S> {
+    let (i, s_i) = point(description, &joint.between[0]);
+    let (j, s_j) = point(description, &joint.between[1]);
+    Pair { i, j, s_i, s_j }
+}
+
+fn read_clearance<S: Scalar>(pair: Pair<S>, clearance: &ClearanceDescription) -> Clearance<S> {
+    let bearing_radius: S = clearance.bearing_radius.value();
+    let radial: S = clearance.radial.value();
+    let journal_radius = bearing_radius - radial;
+    Clearance {
+        pair,
+        bearing_radius,
+        journal_radius,
+        radial,
+        normal: normal_law(&clearance.normal, bearing_radius, journal_radius),
+        friction: clearance.friction.as_ref().and_then(friction_law),
+        cut_tension: clearance.tension == Tension::Cut,
+        minimum_impact_rate: clearance.minimum_impact_rate.value(),
+    }
+}
+
+fn normal_law<S: Scalar>(normal: &NormalDescription, bearing: S, journal: S) -> NormalLaw<S> {
+    let number =
+        |number: &Option<Decimal>| number.as_ref().map_or(S::one(), |number| number.value());
+    let material =
+        stiffness::Material { young: number(&normal.young), poisson: number(&normal.poisson) };
+    let k = match &normal.stiffness {
+        StiffnessDescription::HertzPrinted => stiffness::hertz_printed(material, bearing, journal),
+        StiffnessDescription::HertzInternal => {
+            stiffness::hertz_internal(material, bearing, journal)
+        }
+        StiffnessDescription::Number(k) => k.value(),
+    };
+    let damping_weight = match normal.law {
+        NormalLawName::Hertz => hertz::damping_weight(),
+        NormalLawName::LankaraniNikravesh => {
+            lankarani_nikravesh::damping_weight(number(&normal.restitution))
+        }
+    };
+    NormalLaw::new(k, normal.exponent.value(), damping_weight)
+}
+
+/// The law, or nothing where its coefficient is zero.
+fn friction_law<S: Scalar>(friction: &FrictionDescription) -> Option<Ambrosio<S>> {
+    let FrictionDescription::Ambrosio { coefficient, v0, v1 } = friction;
+    let hysteresis = 10.0 * S::EPSILON.sqrt();
+    let coefficient: S = coefficient.value();
+    (coefficient > S::zero())
+        .then(|| Ambrosio::new(coefficient, v0.value(), v1.value(), hysteresis))
+}
+
+fn start<S: Scalar>(description: &Description, body: &str) -> Start<S> {
+    let none = StartDescription::default();
+    let start = description.start.iter().find(|start| start.body == body).unwrap_or(&none);
+    let read = |number: &Option<Decimal>| number.as_ref().map(|number| number.value());
+    Start {
+        coordinates: [read(&start.x), read(&start.y), read(&start.angle)],
+        velocities: [
+            read(&start.velocity_x),
+            read(&start.velocity_y),
+            read(&start.angular_velocity),
+        ],
+        fixed: start.fixed,
+    }
+}

@@ -69,6 +69,12 @@ pub trait Scalar:
     /// Hyperbolic tangent.
     fn tanh(self) -> Self;
 
+    /// rate · time (rad) less whole turns, where the exact rate is `rate + rate_tail`.
+    fn phase(rate: Self, rate_tail: f64, time: Self) -> Self {
+        let _ = rate_tail;
+        rate * time
+    }
+
     /// One over the square root.
     fn rsqrt(self) -> Self {
         Self::one() / self.sqrt()

@@ -1,0 +1,100 @@
+//! What journal and bearing put on each other in contact (paper, eq. 1, 4–13).
+//!
+//! The normal force pushes the journal along −n, the tangential force acts on it along t; on each
+//! body at its own contact point, R_j n and R_b n from the centres, as the paper's moments do.
+//! The arms differ by δ, so angular momentum is kept only to δ F_T.
+
+use super::{Clearance, Contact, Gap, GapRates, GapSlopes};
+use crate::contact::{NormalForce, Penetration};
+use crate::plane::{Vector, Wrench};
+use crate::scalar::Scalar;
+
+/// The forces of one contact.
+#[derive(Debug, Clone, Copy)]
+pub struct ContactForce<S> {
+    /// Normal force F_N (N) as applied, and its partial derivatives.
+    pub normal: NormalForce<S>,
+    /// Tangential force F_T (N) on the journal, along t.
+    pub tangential: S,
+    /// F_T/F_N, and its derivative by the slip (s/m).
+    ratio: (S, S),
+    /// Force on the journal (N), fixed frame.
+    pub on_journal: Vector<S>,
+}
+
+/// Changes of the wrenches on both bodies with one coordinate or velocity.
+#[derive(Debug, Clone, Copy)]
+pub struct ForceSlopes<S> {
+    /// On body `i`.
+    pub bearing: Wrench<S>,
+    /// On body `j`.
+    pub journal: Wrench<S>,
+}
+
+impl<S: Scalar> Clearance<S> {
+    /// Depth and rate as the normal law wants them.
+    #[inline(always)]
+    pub fn penetration(&self, contact: &Contact<S>, gap: &Gap<S>, rate: S) -> Penetration<S> {
+        Penetration { depth: gap.depth, rate, inverse_impact_rate: contact.inverse_impact_rate }
+    }
+
+    /// The forces of a contact.
+    #[inline(always)]
+    pub fn force(
+        &self,
+        contact: &Contact<S>,
+        gap: &Gap<S>,
+        rates: &GapRates<S>,
+    ) -> ContactForce<S> {
+        let mut normal = self.normal.force(self.penetration(contact, gap, rates.rate));
+        if contact.pulling && self.cut_tension {
+            normal = NormalForce { elastic: normal.elastic, ..NormalForce::none() };
+        }
+        let ratio = match (&self.friction, contact.slip_region) {
+            (Some(friction), Some(region)) => friction.ratio(region, rates.slip),
+            _ => (S::zero(), S::zero()),
+        };
+        let tangential = ratio.0 * normal.value;
+        let on_journal = rates.tangent * tangential - rates.normal * normal.value;
+        ContactForce { normal, tangential, ratio, on_journal }
+    }
+
+    /// The wrenches of a contact on bodies `i` and `j`.
+    #[inline(always)]
+    pub fn wrenches(&self, gap: &Gap<S>, force: &ContactForce<S>) -> [Wrench<S>; 2] {
+        let f = force.on_journal;
+        let mut bearing = Wrench::at(gap.arm_i, -f);
+        let mut journal = Wrench::at(gap.arm_j, f);
+        bearing.moment -= self.bearing_radius * force.tangential;
+        journal.moment += self.journal_radius * force.tangential;
+        [bearing, journal]
+    }
+
+    /// Changes of the wrenches, from those of the gap. `turning` says whether the arm of the
+    /// journal's body (`Some(true)`) or of the bearing's (`Some(false)`) turns with it.
+    pub fn force_slopes(
+        &self,
+        gap: &Gap<S>,
+        rates: &GapRates<S>,
+        force: &ContactForce<S>,
+        slopes: &GapSlopes<S>,
+        turning: Option<bool>,
+    ) -> ForceSlopes<S> {
+        let d_normal = force.normal.d_depth * slopes.depth + force.normal.d_rate * slopes.rate;
+        let d_tangential =
+            force.ratio.0 * d_normal + force.ratio.1 * force.normal.value * slopes.slip;
+        let turn = slopes.direction;
+        let df = rates.tangent * (d_tangential - force.normal.value * turn)
+            - rates.normal * (d_normal + force.tangential * turn);
+        let mut bearing = Wrench::at(gap.arm_i, -df);
+        let mut journal = Wrench::at(gap.arm_j, df);
+        bearing.moment -= self.bearing_radius * d_tangential;
+        journal.moment += self.journal_radius * d_tangential;
+        match turning {
+            Some(true) => journal.moment += gap.arm_j.turned().cross(force.on_journal),
+            Some(false) => bearing.moment -= gap.arm_i.turned().cross(force.on_journal),
+            None => {}
+        }
+        ForceSlopes { bearing, journal }
+    }
+}

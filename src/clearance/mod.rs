@@ -1,0 +1,34 @@
+//! A journal in its bearing: geometry, mode, forces.
+
+mod force;
+mod gap;
+mod mode;
+
+pub use force::{ContactForce, ForceSlopes};
+pub use gap::{Gap, GapRates, GapSlopes};
+pub use mode::{Contact, EventSlot, Mode};
+
+use crate::contact::NormalLaw;
+use crate::friction::Ambrosio;
+use crate::joint::Pair;
+
+/// A revolute joint with clearance: bearing on body `i`, journal on body `j`.
+#[derive(Debug, Clone, Copy)]
+pub struct Clearance<S> {
+    /// The bodies, bearing centre and journal centre on them.
+    pub pair: Pair<S>,
+    /// Radius of the bearing R_b (m).
+    pub bearing_radius: S,
+    /// Radius of the journal R_j (m).
+    pub journal_radius: S,
+    /// Radial clearance c = R_b − R_j (m).
+    pub radial: S,
+    /// Law of the normal force.
+    pub normal: NormalLaw<S>,
+    /// Law of the tangential force, if there is friction.
+    pub friction: Option<Ambrosio<S>>,
+    /// Whether a pulling contact force is cut to zero (ruling `tension`).
+    pub cut_tension: bool,
+    /// Smallest rate that the damping is scaled by (m/s; ruling `minimum_impact_rate`).
+    pub minimum_impact_rate: S,
+}

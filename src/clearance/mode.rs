@@ -1,0 +1,165 @@
+//! Flight or contact: what a clearance joint remembers, and the events that change it.
+//!
+//! The force follows the mode, never the sign of δ: in flight it is zero even at δ > 0 (the last
+//! places before an event), in contact δ < 0 counts as 0. At δ = 0 the force is zero on both
+//! sides, so nothing jumps but the mode.
+
+use super::{Clearance, Gap, GapRates};
+use crate::dae::{Direction, Watch};
+use crate::friction::SlipRegion;
+use crate::scalar::Scalar;
+
+/// What a contact remembers of its begin and of its present branch.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Contact<S> {
+    /// Penetration rate at the begin (m/s), as it was.
+    pub impact_rate: S,
+    /// One over the rate that scales the damping (s/m): the impact rate, raised to the smallest
+    /// one allowed.
+    pub inverse_impact_rate: S,
+    /// Region of the friction law, if there is friction.
+    pub slip_region: Option<SlipRegion>,
+    /// Whether the normal law gives a negative force.
+    pub pulling: bool,
+}
+
+/// The discrete mode of a clearance joint.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Mode<S> {
+    /// No contact, no force.
+    Flight,
+    /// Contact.
+    Contact(Contact<S>),
+}
+
+/// What an event function of a clearance joint watches.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum EventSlot {
+    /// δ/c.
+    Depth,
+    /// The slip above the lower edge of its region, over v1.
+    LowerEdge,
+    /// The slip below the upper edge of its region, over v1.
+    UpperEdge,
+    /// 1 + a δ̇/δ̇⁽⁻⁾, negative where the law pulls.
+    Pull,
+}
+
+impl<S: Scalar> Clearance<S> {
+    /// The event functions this joint has, whatever its mode.
+    pub fn event_slots(&self) -> Vec<EventSlot> {
+        let mut slots = vec![EventSlot::Depth];
+        if self.friction.is_some() {
+            slots.extend([EventSlot::LowerEdge, EventSlot::UpperEdge]);
+        }
+        if self.cut_tension && self.normal.damping_weight() > S::zero() {
+            slots.push(EventSlot::Pull);
+        }
+        slots
+    }
+
+    /// A contact that begins at a rate (m/s) and slip (m/s).
+    pub fn begin(&self, rate: S, slip: S) -> Contact<S> {
+        Contact {
+            impact_rate: rate,
+            inverse_impact_rate: S::one() / rate.max(self.minimum_impact_rate),
+            slip_region: self.friction.map(|friction| friction.region(slip)),
+            pulling: false,
+        }
+    }
+
+    /// How an event function is watched in a mode.
+    pub fn watch(&self, mode: &Mode<S>, slot: EventSlot) -> Watch {
+        let (direction, power) = match (mode, slot) {
+            (Mode::Flight, EventSlot::Depth) => (Direction::Rising, 1.0),
+            (Mode::Flight, _) => (Direction::Off, 1.0),
+            (Mode::Contact(_), EventSlot::Depth) => {
+                (Direction::Falling, self.normal.smooth_power())
+            }
+            (Mode::Contact(contact), EventSlot::Pull) if contact.pulling => {
+                (Direction::Rising, 1.0)
+            }
+            (Mode::Contact(_), EventSlot::Pull) => (Direction::Falling, 1.0),
+            (Mode::Contact(contact), edge) => match self.edge(contact, edge) {
+                Some(_) => (Direction::Falling, 1.0),
+                None => (Direction::Off, 1.0),
+            },
+        };
+        Watch { direction, power }
+    }
+
+    /// The finite edge (m/s) of the present slip region on one side.
+    fn edge(&self, contact: &Contact<S>, slot: EventSlot) -> Option<S> {
+        let (lower, upper) = self.friction?.edges(contact.slip_region?);
+        Some(if slot == EventSlot::LowerEdge { lower } else { upper }).filter(|e| e.is_finite())
+    }
+
+    /// Value of an event function. `rates` is asked for only in contact, where e > 0.
+    #[inline(always)]
+    pub fn event_value(
+        &self,
+        mode: &Mode<S>,
+        slot: EventSlot,
+        gap: &Gap<S>,
+        rates: impl FnOnce() -> GapRates<S>,
+    ) -> S {
+        match (mode, slot) {
+            (_, EventSlot::Depth) => gap.depth / self.radial,
+            (Mode::Flight, _) => S::one(),
+            (Mode::Contact(contact), EventSlot::Pull) => {
+                self.normal.factor(self.penetration(contact, gap, rates().rate))
+            }
+            (Mode::Contact(contact), edge) => match (self.edge(contact, edge), &self.friction) {
+                (Some(at), Some(friction)) => {
+                    let above = (rates().slip - at) / friction.v1();
+                    if edge == EventSlot::LowerEdge { above } else { -above }
+                }
+                _ => S::one(),
+            },
+        }
+    }
+
+    /// Time derivative (1/s) of an event function, from δ̇, δ̈ and v̇_T (m/s, m/s²).
+    pub fn event_rate(&self, mode: &Mode<S>, slot: EventSlot, rate: S, second: (S, S)) -> S {
+        match (mode, slot) {
+            (_, EventSlot::Depth) => rate / self.radial,
+            (Mode::Flight, _) => S::zero(),
+            (Mode::Contact(contact), EventSlot::Pull) => {
+                self.normal.damping_weight() * second.0 * contact.inverse_impact_rate
+            }
+            (Mode::Contact(contact), edge) => match (self.edge(contact, edge), &self.friction) {
+                (Some(_), Some(friction)) => {
+                    let above = second.1 / friction.v1();
+                    if edge == EventSlot::LowerEdge { above } else { -above }
+                }
+                _ => S::zero(),
+            },
+        }
+    }
+
+    /// The mode after an event function has fired at a state. `rates` is asked for only where
+    /// e > 0.
+    pub fn switched(
+        &self,
+        mode: &Mode<S>,
+        slot: EventSlot,
+        rates: impl FnOnce() -> GapRates<S>,
+    ) -> Mode<S> {
+        match (mode, slot) {
+            (Mode::Flight, EventSlot::Depth) => {
+                let rates = rates();
+                Mode::Contact(self.begin(rates.rate, rates.slip))
+            }
+            (Mode::Contact(_), EventSlot::Depth) | (Mode::Flight, _) => Mode::Flight,
+            (Mode::Contact(contact), EventSlot::Pull) => {
+                Mode::Contact(Contact { pulling: !contact.pulling, ..*contact })
+            }
+            (Mode::Contact(contact), edge) => {
+                let (slip, upward) = (rates().slip, edge == EventSlot::UpperEdge);
+                let slip_region = (contact.slip_region.zip(self.friction))
+                    .map(|(region, law)| law.beyond(region, upward, slip));
+                Mode::Contact(Contact { slip_region, ..*contact })
+            }
+        }
+    }
+}

@@ -1,0 +1,187 @@
+//! Coulomb friction, modified by Ambrósio.
+//! ```text
+//! F_T = −c_f c_d F_N v_T/|v_T|                              (paper, eq. 10)
+//! c_d = 0                          |v_T| ≤ v0
+//!       (|v_T| − v0)/(v1 − v0)     v0 ≤ |v_T| ≤ v1          (paper, eq. 11)
+//!       1                          v1 ≤ |v_T|
+//! ```
+//! | symbol | unit | meaning                                       |
+//! |--------|------|-----------------------------------------------|
+//! | c_f    | –    | friction coefficient                          |
+//! | v0, v1 | m/s  | edges of the ramp                             |
+//! | v_T    | m/s  | slip of the journal on the bearing            |
+//!
+//! The resultant of F_N and F_T is F_N √(1 + (c_f c_d)²), at the friction angle from the line of
+//! centres (eq. 12, 13). Below v0 there is no friction at all, so nothing ever sticks. F_T has a
+//! kink at each edge: an integration of high order must restart there, and therefore the law is
+//! evaluated by region, each of which goes on smoothly beyond its edges.
+
+use crate::scalar::Scalar;
+
+/// Which piece of the law is in force.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SlipRegion {
+    /// v_T ≤ −v1: full friction, slip backward.
+    Backward,
+    /// −v1 ≤ v_T ≤ −v0.
+    RampBackward,
+    /// |v_T| ≤ v0: no friction.
+    Still,
+    /// v0 ≤ v_T ≤ v1.
+    RampForward,
+    /// v1 ≤ v_T: full friction, slip forward.
+    Forward,
+}
+
+use SlipRegion::{Backward, Forward, RampBackward, RampForward, Still};
+
+/// The regions in the order of v_T.
+const ORDER: [SlipRegion; 5] = [Backward, RampBackward, Still, RampForward, Forward];
+
+/// The law and its parameters.
+#[derive(Debug, Clone, Copy)]
+pub struct Ambrosio<S> {
+    coefficient: S,
+    v0: S,
+    v1: S,
+    inverse_width: S,
+    hysteresis: S,
+}
+
+impl<S: Scalar> Ambrosio<S> {
+    /// Friction with coefficient c_f and ramp from v0 to v1 (m/s), 0 ≤ v0 < v1.
+    ///
+    /// A slip that decays onto an edge of the ramp from above must not cross it again and again
+    /// on rounding errors: on the way down an edge lies lower by `hysteresis` · v1. Region
+    /// and neighbour differ there by the order of `hysteresis`, for a time of the same order, so
+    /// the trajectory is changed by its square.
+    pub fn new(coefficient: S, v0: S, v1: S, hysteresis: f64) -> Self {
+        let hysteresis = S::from_f64(hysteresis) * v1;
+        Ambrosio { coefficient, v0, v1, inverse_width: S::one() / (v1 - v0), hysteresis }
+    }
+
+    /// Upper end v1 of the ramp (m/s), the scale of slip.
+    pub fn v1(&self) -> S {
+        self.v1
+    }
+
+    /// Tangential force per normal force, F_T/F_N, and its derivative by the slip (s/m).
+    #[inline(always)]
+    pub fn ratio(&self, region: SlipRegion, slip: S) -> (S, S) {
+        let slope = -self.coefficient * self.inverse_width;
+        match region {
+            Backward => (self.coefficient, S::zero()),
+            RampBackward => (slope * (slip + self.v0), slope),
+            Still => (S::zero(), S::zero()),
+            RampForward => (slope * (slip - self.v0), slope),
+            Forward => (-self.coefficient, S::zero()),
+        }
+    }
+
+    /// The region of a slip (m/s) about whose past nothing is known.
+    pub fn region(&self, slip: S) -> SlipRegion {
+        let (inner, outer) = match slip < S::zero() {
+            true => (RampBackward, Backward),
+            false => (RampForward, Forward),
+        };
+        match slip.abs() {
+            s if s > self.v1 => outer,
+            s if s > self.v0 => inner,
+            _ => Still,
+        }
+    }
+
+    /// The slips (m/s) at which a region is left, below and above; infinite where it has no edge.
+    pub fn edges(&self, region: SlipRegion) -> (S, S) {
+        let far = S::from_f64(f64::INFINITY);
+        let h = self.hysteresis;
+        match region {
+            Backward => (-far, -self.v1 + h),
+            RampBackward => (-self.v1, -self.v0 + h),
+            Still => (-self.v0, self.v0),
+            RampForward => (self.v0 - h, self.v1),
+            Forward => (self.v1 - h, far),
+        }
+    }
+
+    /// The region after `region` was left at `slip` (m/s) through its upper or its lower edge.
+    pub fn beyond(&self, region: SlipRegion, upward: bool, slip: S) -> SlipRegion {
+        let index = ORDER.iter().position(|r| *r == region).unwrap_or(2);
+        let next = if upward { (index + 1).min(4) } else { index.saturating_sub(1) };
+        self.settled(ORDER[next], slip)
+    }
+
+    /// The region in which `slip` (m/s) stays, found from a neighbouring one.
+    fn settled(&self, region: SlipRegion, slip: S) -> SlipRegion {
+        let mut index = ORDER.iter().position(|r| *r == region).unwrap_or(2);
+        while index + 1 < ORDER.len() && slip > self.edges(ORDER[index]).1 {
+            index += 1;
+        }
+        while index > 0 && slip < self.edges(ORDER[index]).0 {
+            index -= 1;
+        }
+        ORDER[index]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn law() -> Ambrosio<f64> {
+        Ambrosio::new(0.1, 1e-3, 1e-2, 1e-6)
+    }
+
+    proptest! {
+        #[test]
+        fn force_opposes_slip_and_never_exceeds_coulomb(slip in -0.05..0.05f64) {
+            let (ratio, _) = law().ratio(law().region(slip), slip);
+            prop_assert!(ratio * slip <= 0.0 && ratio.abs() <= 0.1 * (1.0 + 1e-12));
+        }
+
+        #[test]
+        fn opposite_slip_has_opposite_friction(slip in -0.05..0.05f64) {
+            let at = |slip| law().ratio(law().region(slip), slip);
+            prop_assert_eq!(at(slip).0, -at(-slip).0);
+            prop_assert_eq!(at(slip).1, at(-slip).1);
+        }
+
+        #[test]
+        fn a_region_just_entered_is_not_left_again_at_once(slip in -0.05..0.05f64) {
+            for region in ORDER {
+                let settled = law().settled(region, slip);
+                let (lower, upper) = law().edges(settled);
+                prop_assert!(lower <= slip && slip <= upper);
+            }
+        }
+    }
+
+    #[test]
+    fn an_edge_hit_exactly_counts_as_passed() {
+        assert_eq!(law().beyond(Still, true, 1e-3), RampForward);
+        assert_eq!(law().beyond(RampForward, true, 1e-2), Forward);
+        let (lower, _) = law().edges(Forward);
+        assert_eq!(law().beyond(Forward, false, lower), RampForward);
+    }
+
+    #[test]
+    fn the_law_is_continuous_at_its_edges() {
+        for (edge, below, above) in [
+            (-1e-2, Backward, RampBackward),
+            (-1e-3, RampBackward, Still),
+            (1e-3, Still, RampForward),
+            (1e-2, RampForward, Forward),
+        ] {
+            let jump = law().ratio(below, edge).0 - law().ratio(above, edge).0;
+            assert!(jump.abs() < 1e-15, "{edge}: {jump:e}");
+        }
+    }
+
+    #[test]
+    fn a_ramp_through_zero_has_no_still_region() {
+        let law = Ambrosio::new(0.1, 0.0, 1e-2, 1e-6);
+        assert_eq!(law.beyond(RampForward, false, -1e-8), RampBackward);
+        assert_eq!(law.ratio(RampForward, 1e-4), law.ratio(RampBackward, 1e-4));
+    }
+}

@@ -1,0 +1,5 @@
+//! Tangential-force laws, one file a law.
+
+mod ambrosio;
+
+pub use ambrosio::{Ambrosio, SlipRegion};

@@ -1,0 +1,142 @@
+//! Small dense linear solves in any arithmetic.
+//!
+//! Matrices are square, row by row in one slice. nalgebra's decompositions want a number type
+//! with far more functions than [`Scalar`] has, and the sizes here are those of a mechanism.
+
+use crate::scalar::Scalar;
+
+/// No solution: the pivot of this row is nothing but rounding.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Singular {
+    /// Row at which it was seen.
+    pub row: usize,
+}
+
+/// Factors a symmetric positive definite matrix in place into L D Lᵀ (lower triangle; 1/D on the
+/// diagonal).
+pub fn factor_symmetric<S: Scalar>(a: &mut [S], n: usize) -> Result<(), Singular> {
+    for j in 0..n {
+        let whole = a[j * n + j];
+        let mut pivot = whole;
+        for k in 0..j {
+            // a[j, k] still holds L D, the upper triangle L
+            pivot -= a[j * n + k] * a[k * n + j];
+        }
+        if !(pivot > whole * S::from_f64(1e4 * S::EPSILON)) {
+            return Err(Singular { row: j });
+        }
+        let inverse = S::one() / pivot;
+        for i in j + 1..n {
+            let mut sum = a[i * n + j];
+            for k in 0..j {
+                sum -= a[i * n + k] * a[k * n + j];
+            }
+            a[i * n + j] = sum;
+            a[j * n + i] = sum * inverse;
+        }
+        a[j * n + j] = inverse;
+    }
+    Ok(())
+}
+
+/// Solves with the factors of [`factor_symmetric`], in place.
+pub fn solve_symmetric<S: Scalar>(factors: &[S], n: usize, b: &mut [S]) {
+    for i in 0..n {
+        for k in 0..i {
+            b[i] -= factors[k * n + i] * b[k];
+        }
+    }
+    for i in 0..n {
+        b[i] *= factors[i * n + i];
+    }
+    for i in (0..n).rev() {
+        for k in i + 1..n {
+            b[i] -= factors[i * n + k] * b[k];
+        }
+    }
+}
+
+/// Solves a general system in place by elimination with row pivoting; `a` is destroyed.
+pub fn solve_general<S: Scalar>(a: &mut [S], n: usize, b: &mut [S]) -> Result<(), Singular> {
+    for j in 0..n {
+        let pivot = (j..n)
+            .fold(j, |best, i| if a[i * n + j].abs() > a[best * n + j].abs() { i } else { best });
+        if a[pivot * n + j] == S::zero() || !a[pivot * n + j].is_finite() {
+            return Err(Singular { row: j });
+        }
+        for k in 0..n {
+            a.swap(j * n + k, pivot * n + k);
+        }
+        b.swap(j, pivot);
+        for i in j + 1..n {
+            let factor = a[i * n + j] / a[j * n + j];
+            for k in j + 1..n {
+                a[i * n + k] -= factor * a[j * n + k];
+            }
+            b[i] -= factor * b[j];
+        }
+    }
+    for i in (0..n).rev() {
+        for k in i + 1..n {
+            b[i] -= a[i * n + k] * b[k];
+        }
+        b[i] = b[i] / a[i * n + i];
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn times(a: &[f64], n: usize, x: &[f64]) -> Vec<f64> {
+        (0..n).map(|i| (0..n).map(|k| a[i * n + k] * x[k]).sum()).collect()
+    }
+
+    proptest! {
+        #[test]
+        fn symmetric_solves_undo_products(
+            g in proptest::collection::vec(-1.0..1.0f64, 25),
+            x in proptest::collection::vec(-1.0..1.0f64, 5),
+        ) {
+            let n = 5;
+            let mut a = vec![0.0; n * n];
+            for i in 0..n {
+                for j in 0..n {
+                    a[i * n + j] = (0..n).map(|k| g[i * n + k] * g[j * n + k]).sum::<f64>()
+                        + f64::from(u8::from(i == j));
+                }
+            }
+            let mut b = times(&a, n, &x);
+            factor_symmetric(&mut a, n).unwrap();
+            solve_symmetric(&a, n, &mut b);
+            for (b, x) in b.iter().zip(&x) {
+                prop_assert!((b - x).abs() < 1e-12);
+            }
+        }
+
+        #[test]
+        fn general_solves_undo_products(
+            g in proptest::collection::vec(-1.0..1.0f64, 25),
+            x in proptest::collection::vec(-1.0..1.0f64, 5),
+        ) {
+            let n = 5;
+            let mut a: Vec<f64> = g;
+            for i in 0..n {
+                a[i * n + (i + 2) % n] += 4.0;
+            }
+            let mut b = times(&a, n, &x);
+            solve_general(&mut a, n, &mut b).unwrap();
+            for (b, x) in b.iter().zip(&x) {
+                prop_assert!((b - x).abs() < 1e-11);
+            }
+        }
+    }
+
+    #[test]
+    fn a_repeated_row_is_named() {
+        let mut a = vec![2.0, 1.0, 2.0, 1.0, 3.0, 1.0, 2.0, 1.0, 2.0];
+        assert_eq!(factor_symmetric(&mut a, 3), Err(Singular { row: 2 }));
+    }
+}

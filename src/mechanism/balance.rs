@@ -1,0 +1,186 @@
+//! Forces on the bodies, accelerations and multipliers, and what the drives must do.
+
+use super::layout::Role;
+use super::{Mechanism, Touch};
+use crate::clearance::Mode;
+use crate::linear::{self, Singular};
+use crate::plane::{Motion, Vector, Wrench};
+use crate::scalar::Scalar;
+
+impl<S: Scalar> Mechanism<S> {
+    /// Loads and contact forces on every body, as placed.
+    #[inline(always)]
+    pub(super) fn apply_loads(&mut self) {
+        let now = &mut self.now;
+        now.wrenches.fill(Wrench::none());
+        for load in self.model.loads() {
+            load.apply(self.model.masses(), &mut now.wrenches);
+        }
+        for (k, clearance) in self.model.clearances().iter().enumerate() {
+            let Mode::Contact(contact) = &self.modes[k] else {
+                now.touches[k] = None;
+                continue;
+            };
+            let gap = clearance.gap(&now.poses, &now.motions);
+            let rates = clearance.rates(&gap, &now.motions);
+            let force = clearance.force(contact, &gap, &rates);
+            let [bearing, journal] = clearance.wrenches(&gap, &force);
+            now.wrenches[clearance.pair.i] += bearing;
+            now.wrenches[clearance.pair.j] += journal;
+            now.touches[k] = Some(Touch { gap, rates, force });
+        }
+    }
+
+    /// Accelerations of the free bodies that the wrenches on them give (paper, eq. 14).
+    #[inline(always)]
+    pub(super) fn accelerate(&mut self) {
+        for (body, role) in self.layout.roles.iter().enumerate() {
+            let Role::Free(at) = *role else { continue };
+            let (wrench, inverse) = (self.now.wrenches[body], &self.inverse_masses[at..at + 3]);
+            self.now.accelerations[body] =
+                Motion { linear: wrench.force * inverse[0], angular: wrench.moment * inverse[2] };
+        }
+    }
+
+    /// Solves for accelerations and multipliers:
+    /// ```text
+    /// (Φ_q M⁻¹ Φ_qᵀ) λ = Φ̈(M⁻¹ Q),   v̇ = M⁻¹ (Q − Φ_qᵀ λ)
+    /// ```
+    pub(super) fn solve(&mut self) -> Result<(), Singular> {
+        self.accelerate();
+        if self.layout.rows > 0 {
+            let now = &mut self.now;
+            for row in &self.layout.constraints {
+                let range = row.first..row.first + row.constraint.rows();
+                let error = &mut now.lambda[range];
+                let (poses, motions) = (&now.poses, &now.motions);
+                row.constraint.acceleration_error(poses, motions, &now.accelerations, error);
+            }
+            self.factor()?;
+            linear::solve_symmetric(&self.now.matrix, self.layout.rows, &mut self.now.lambda);
+            self.apply_multipliers();
+            self.accelerate();
+        }
+        for (body, role) in self.layout.roles.iter().enumerate() {
+            let Role::Free(at) = *role else { continue };
+            let a = self.now.accelerations[body];
+            self.now.v_dot[at..at + 3].copy_from_slice(&[a.linear.x, a.linear.y, a.angular]);
+        }
+        Ok(())
+    }
+
+    /// Adds what the joints put on the bodies.
+    #[inline(always)]
+    pub(super) fn apply_multipliers(&mut self) {
+        let now = &mut self.now;
+        for row in &self.layout.constraints {
+            let lambda = &now.lambda[row.first..row.first + row.constraint.rows()];
+            let on = row.constraint.wrenches(&now.poses, lambda);
+            for (body, wrench) in row.constraint.bodies().into_iter().zip(on) {
+                now.wrenches[body] += wrench;
+            }
+        }
+    }
+
+    /// Forms and factors Φ_q M⁻¹ Φ_qᵀ at the poses as placed.
+    pub(super) fn factor(&mut self) -> Result<(), Singular> {
+        let m = self.layout.rows;
+        let constraints = &self.layout.constraints;
+        for (a, first) in constraints.iter().enumerate() {
+            for second in &constraints[..=a] {
+                for r in 0..first.constraint.rows() {
+                    for s in 0..second.constraint.rows() {
+                        let (row, column) = (first.first + r, second.first + s);
+                        let entry = self.coupling(first, r, second, s);
+                        self.now.matrix[row * m + column] = entry;
+                        self.now.matrix[column * m + row] = entry;
+                    }
+                }
+            }
+        }
+        linear::factor_symmetric(&mut self.now.matrix, m)
+    }
+
+    /// One entry of Φ_q M⁻¹ Φ_qᵀ.
+    fn coupling(
+        &self,
+        first: &super::layout::Row<S>,
+        r: usize,
+        second: &super::layout::Row<S>,
+        s: usize,
+    ) -> S {
+        let mut sum = S::zero();
+        let mut blocks = None;
+        for (side_a, body) in first.constraint.bodies().into_iter().enumerate() {
+            let Role::Free(at) = self.layout.roles[body] else { continue };
+            for (side_b, other) in second.constraint.bodies().into_iter().enumerate() {
+                if other != body {
+                    continue;
+                }
+                let (of_first, of_second) = *blocks.get_or_insert_with(|| {
+                    (
+                        first.constraint.jacobian(r, &self.now.poses),
+                        second.constraint.jacobian(s, &self.now.poses),
+                    )
+                });
+                for c in 0..3 {
+                    sum += of_first[side_a][c] * of_second[side_b][c] * self.inverse_masses[at + c];
+                }
+            }
+        }
+        sum
+    }
+
+    /// Force and torque that make each driven body move as prescribed, by Newton and Euler from
+    /// the last body of each chain to the ground. Consumes the wrenches on the driven bodies.
+    pub(super) fn drive(&mut self) {
+        for index in (0..self.layout.driven.len()).rev() {
+            let driven = self.layout.driven[index];
+            let (pair, _) = self.driving(driven.drive);
+            let (s_base, s_own) =
+                if driven.second { (pair.s_i, pair.s_j) } else { (pair.s_j, pair.s_i) };
+            let now = &mut self.now;
+            let (a, wrench) = (now.accelerations[driven.body], now.wrenches[driven.body]);
+            let mass = self.model.masses()[driven.body];
+            let inertia = self.model.inertias()[driven.body];
+            let force: Vector<S> = a.linear * mass - wrench.force;
+            let arm = now.poses[driven.body].rotate(s_own);
+            let torque = inertia * a.angular - wrench.moment - arm.cross(force);
+            let mut reaction = Wrench::at(now.poses[driven.base].rotate(s_base), -force);
+            reaction.moment -= torque;
+            now.wrenches[driven.base] += reaction;
+            now.driving[index] = (force, torque);
+        }
+    }
+
+    /// Torque of a drive (N m) on the second body of its joint, at the state last evaluated.
+    pub(super) fn drive_torque(&self, drive: usize) -> S {
+        let driven = self.layout.driven.iter().position(|driven| driven.drive == drive);
+        if let Some(index) = driven {
+            let torque = self.now.driving[index].1;
+            return if self.layout.driven[index].second { torque } else { -torque };
+        }
+        let constraint = self
+            .layout
+            .constraints
+            .iter()
+            .find(|row| row.origin == super::layout::Origin::Drive(drive));
+        constraint.map_or(S::zero(), |row| -self.now.lambda[row.first])
+    }
+
+    /// Powers of the drives and of the dissipation in each clearance (W).
+    pub(super) fn measure_powers(&mut self) {
+        let mut driving = S::zero();
+        for (index, drive) in self.model.drives().iter().enumerate() {
+            driving += self.drive_torque(index) * drive.law.rate();
+        }
+        self.now.powers[0] = driving;
+        for (k, touch) in self.now.touches.iter().enumerate() {
+            self.now.powers[1 + k] = touch.as_ref().map_or(S::zero(), |touch| {
+                let force = &touch.force;
+                (force.normal.value - force.normal.elastic) * touch.rates.rate
+                    - force.tangential * touch.rates.slip
+            });
+        }
+    }
+}

@@ -1,0 +1,169 @@
+//! Residual and Jacobian of the index-1 form, written by hand.
+//! ```text
+//! r_q = q̇ − v
+//! r_v = v̇ − M⁻¹ (Q(q, v, t) − Φ_qᵀ λ)
+//! r_λ = Φ̈(q, v, v̇, t)
+//! ```
+//! y = (q, v, λ); the Jacobian is ∂r/∂y + c_j ∂r/∂ẏ. It is tested against dual numbers, column by
+//! column.
+
+use super::Mechanism;
+use super::layout::Role;
+use crate::dae::{Dae, Fault, State};
+use crate::plane::{Motion, Vector, Wrench};
+use crate::scalar::Scalar;
+use nalgebra::DMatrixViewMut;
+
+impl<S: Scalar> Mechanism<S> {
+    /// The residual in any arithmetic.
+    #[inline(always)]
+    pub fn index_one_residual(&mut self, t: S, y: &[S], yp: &[S], r: &mut [S]) {
+        let n = self.layout.coordinates;
+        self.stand(t, y, yp);
+        self.apply_loads();
+        self.apply_multipliers();
+        for k in 0..n {
+            r[k] = yp[k] - y[n + k];
+        }
+        for (body, at) in self.free_bodies() {
+            let wrench = &self.now.wrenches[body];
+            let by = &self.inverse_masses[at..at + 3];
+            let (row, rate) = (n + at, &yp[n + at..n + at + 3]);
+            r[row] = rate[0] - by[0] * wrench.force.x;
+            r[row + 1] = rate[1] - by[1] * wrench.force.y;
+            r[row + 2] = rate[2] - by[2] * wrench.moment;
+        }
+        let now = &self.now;
+        for row in &self.layout.constraints {
+            let at = 2 * n + row.first;
+            let error = &mut r[at..at + row.constraint.rows()];
+            row.constraint.acceleration_error(&now.poses, &now.motions, &now.accelerations, error);
+        }
+    }
+
+    /// Places the bodies at (q, v) of `y`, with the accelerations of `yp` and λ of `y`.
+    fn stand(&mut self, t: S, y: &[S], yp: &[S]) {
+        let n = self.layout.coordinates;
+        self.place(&State { time: t, q: &y[..n], v: &y[n..2 * n], turns: None });
+        self.now.lambda.copy_from_slice(&y[2 * n..]);
+        for (body, role) in self.layout.roles.iter().enumerate() {
+            let Role::Free(at) = *role else { continue };
+            let a = &yp[n + at..n + at + 3];
+            self.now.accelerations[body] =
+                Motion { linear: Vector::new(a[0], a[1]), angular: a[2] };
+        }
+    }
+
+    /// Place in q of a free body.
+    fn place_in_q(&self, body: usize) -> Option<usize> {
+        match self.layout.roles[body] {
+            Role::Free(at) => Some(at),
+            _ => None,
+        }
+    }
+}
+
+impl Dae for Mechanism<f64> {
+    fn residual(&mut self, t: f64, y: &[f64], yp: &[f64], r: &mut [f64]) -> Result<(), Fault> {
+        self.index_one_residual(t, y, yp, r);
+        match r.iter().all(|r| r.is_finite()) {
+            true => Ok(()),
+            false => Err(Fault::TryShorterStep("the residual is not finite".into())),
+        }
+    }
+
+    fn jacobian(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        yp: &[f64],
+        cj: f64,
+        j: &mut DMatrixViewMut<'_, f64>,
+    ) -> Result<(), Fault> {
+        let n = self.layout.coordinates;
+        self.stand(t, y, yp);
+        self.apply_loads();
+        for k in 0..n {
+            j[(k, k)] = cj;
+            j[(k, n + k)] = -1.0;
+            j[(n + k, n + k)] = cj;
+        }
+        for clearance in 0..self.modes.len() {
+            self.contact_entries(clearance, j);
+        }
+        self.constraint_entries(cj, j);
+        Ok(())
+    }
+}
+
+impl Mechanism<f64> {
+    /// −M⁻¹ ∂Q/∂(q, v) of one contact.
+    fn contact_entries(&self, k: usize, j: &mut DMatrixViewMut<'_, f64>) {
+        let Some(touch) = &self.now.touches[k] else { return };
+        let law = &self.model.clearances()[k];
+        let n = self.layout.coordinates;
+        let (gap, rates, force) = (&touch.gap, &touch.rates, &touch.force);
+        for (of_journal, body) in [(false, law.pair.i), (true, law.pair.j)] {
+            let Some(at) = self.place_in_q(body) else { continue };
+            for c in 0..3 {
+                let motions = &self.now.motions;
+                let by_q = law.coordinate_slopes(gap, rates, motions, of_journal, c);
+                let turning = (c == 2).then_some(of_journal);
+                let slopes = law.force_slopes(gap, rates, force, &by_q, turning);
+                self.subtract(law.pair.i, at + c, &slopes.bearing, j);
+                self.subtract(law.pair.j, at + c, &slopes.journal, j);
+                let by_v = law.velocity_slopes(gap, rates, of_journal, c);
+                let slopes = law.force_slopes(gap, rates, force, &by_v, None);
+                self.subtract(law.pair.i, n + at + c, &slopes.bearing, j);
+                self.subtract(law.pair.j, n + at + c, &slopes.journal, j);
+            }
+        }
+    }
+
+    /// Subtracts M⁻¹ of a change of a body's wrench in one column.
+    fn subtract(
+        &self,
+        body: usize,
+        column: usize,
+        change: &Wrench<f64>,
+        j: &mut DMatrixViewMut<'_, f64>,
+    ) {
+        let Some(at) = self.place_in_q(body) else { return };
+        let row = self.layout.coordinates + at;
+        let by = &self.inverse_masses[at..at + 3];
+        j[(row, column)] -= by[0] * change.force.x;
+        j[(row + 1, column)] -= by[1] * change.force.y;
+        j[(row + 2, column)] -= by[2] * change.moment;
+    }
+
+    /// M⁻¹ Φ_qᵀ, M⁻¹ ∂(Φ_qᵀ λ)/∂q, c_j Φ_q and ∂Φ̈/∂(q, v).
+    fn constraint_entries(&self, cj: f64, j: &mut DMatrixViewMut<'_, f64>) {
+        let n = self.layout.coordinates;
+        let now = &self.now;
+        for row in &self.layout.constraints {
+            let constraint = &row.constraint;
+            let bodies = constraint.bodies().map(|body| self.place_in_q(body));
+            let lambda = &now.lambda[row.first..row.first + constraint.rows()];
+            let by_angle = constraint.d_wrenches(&now.poses, lambda);
+            for (at, by_angle) in bodies.into_iter().zip(by_angle) {
+                let Some(at) = at else { continue };
+                j[(n + at + 2, at + 2)] += self.inverse_masses[at + 2] * by_angle;
+            }
+            for r in 0..constraint.rows() {
+                let equation = 2 * n + row.first + r;
+                let blocks = constraint.jacobian(r, &now.poses);
+                let bias =
+                    constraint.d_acceleration(r, &now.poses, &now.motions, &now.accelerations);
+                for (side, at) in bodies.into_iter().enumerate() {
+                    let Some(at) = at else { continue };
+                    for (c, entry) in blocks[side].into_iter().enumerate() {
+                        j[(n + at + c, equation)] += self.inverse_masses[at + c] * entry;
+                        j[(equation, n + at + c)] += cj * entry;
+                    }
+                    j[(equation, at + 2)] += bias[side][0];
+                    j[(equation, n + at + 2)] += bias[side][1];
+                }
+            }
+        }
+    }
+}

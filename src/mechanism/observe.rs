@@ -1,0 +1,135 @@
+//! What is told of a mechanism: positions to energies, in double precision.
+
+use super::layout::{Origin, Role};
+use super::{
+    BodyObservation, ClearanceObservation, EnergyObservation, JointObservation, Mechanism,
+    Observation,
+};
+use crate::clearance::Mode;
+use crate::plane::Vector;
+use crate::scalar::Scalar;
+
+impl<S: Scalar> Mechanism<S> {
+    /// Everything at the state last evaluated. `time` (s) is the sample's own, `integrals` (J)
+    /// are those that an engine carried to it.
+    pub fn observe(&self, time: f64, integrals: &[S]) -> Observation {
+        Observation {
+            time,
+            bodies: (1..self.layout.roles.len()).map(|body| self.observe_body(body)).collect(),
+            clearances: (0..self.modes.len()).map(|k| self.observe_clearance(k)).collect(),
+            joints: (0..self.model.joints().len()).map(|k| self.observe_joint(k)).collect(),
+            drive_torques: (0..self.model.drives().len())
+                .map(|drive| self.drive_torque(drive).to_f64())
+                .collect(),
+            energy: self.observe_energy(integrals),
+        }
+    }
+
+    fn observe_body(&self, body: usize) -> BodyObservation {
+        let (pose, motion) = (&self.now.poses[body], &self.now.motions[body]);
+        let acceleration = &self.now.accelerations[body];
+        BodyObservation {
+            position: doubles(pose.position),
+            angle: pose.angle.to_f64(),
+            velocity: doubles(motion.linear),
+            angular_velocity: motion.angular.to_f64(),
+            acceleration: doubles(acceleration.linear),
+            angular_acceleration: acceleration.angular.to_f64(),
+        }
+    }
+
+    fn observe_clearance(&self, k: usize) -> ClearanceObservation {
+        let law = &self.model.clearances()[k];
+        let gap = law.gap(&self.now.poses, &self.now.motions);
+        let (rate, slip) = self.gap_rates(k);
+        let force = self.now.touches[k].as_ref().map(|touch| touch.force);
+        ClearanceObservation {
+            offset: doubles(gap.offset),
+            eccentricity: gap.eccentricity.to_f64(),
+            penetration: gap.depth.to_f64(),
+            penetration_rate: rate.to_f64(),
+            slip_velocity: slip.to_f64(),
+            normal_force: force.map_or(0.0, |force| force.normal.value.to_f64()),
+            tangential_force: force.map_or(0.0, |force| force.tangential.to_f64()),
+            in_contact: matches!(self.modes[k], Mode::Contact(_)),
+        }
+    }
+
+    fn observe_joint(&self, index: usize) -> JointObservation {
+        let joint = &self.model.joints()[index];
+        if let Some(k) = joint.clearance {
+            return self.now.touches[k].as_ref().map_or_else(JointObservation::default, |touch| {
+                let moment = self.model.clearances()[k].journal_radius * touch.force.tangential;
+                JointObservation { force: doubles(touch.force.on_journal), moment: moment.to_f64() }
+            });
+        }
+        let driven = self.layout.driven.iter().position(|driven| driven.joint == index);
+        let force = match driven {
+            Some(place) if self.layout.driven[place].second => self.now.driving[place].0,
+            Some(place) => -self.now.driving[place].0,
+            None => {
+                let is_its = |row: &&super::layout::Row<S>| row.origin == Origin::Joint(index);
+                let first = self.layout.constraints.iter().find(is_its).map(|row| row.first);
+                first.map_or(Vector::zero(), |first| {
+                    -Vector::new(self.now.lambda[first], self.now.lambda[first + 1])
+                })
+            }
+        };
+        JointObservation { force: doubles(force), moment: 0.0 }
+    }
+
+    fn observe_energy(&self, integrals: &[S]) -> EnergyObservation {
+        let drive_work = integrals[0];
+        let dissipated = integrals[1..].iter().fold(S::zero(), |sum, d| sum + *d);
+        let (kinetic, potential, elastic) =
+            (self.kinetic_energy(), self.potential_energy(), self.elastic_energy());
+        let residual = kinetic + potential + elastic + dissipated - drive_work - self.start_energy;
+        EnergyObservation {
+            kinetic: kinetic.to_f64(),
+            potential: potential.to_f64(),
+            elastic: elastic.to_f64(),
+            dissipated: dissipated.to_f64(),
+            drive_work: drive_work.to_f64(),
+            load_work: 0.0,
+            residual: residual.to_f64(),
+        }
+    }
+
+    /// Kinetic, potential and elastic energy (J) at the state last evaluated.
+    pub(super) fn stored_energy(&self) -> S {
+        self.kinetic_energy() + self.potential_energy() + self.elastic_energy()
+    }
+
+    fn kinetic_energy(&self) -> S {
+        let half = S::from_f64(0.5);
+        let mut sum = S::zero();
+        for (body, role) in self.layout.roles.iter().enumerate() {
+            if *role == Role::Ground {
+                continue;
+            }
+            let motion = &self.now.motions[body];
+            sum += half * self.model.masses()[body] * motion.linear.dot(motion.linear)
+                + half * self.model.inertias()[body] * motion.angular * motion.angular;
+        }
+        sum
+    }
+
+    fn potential_energy(&self) -> S {
+        let loads = self.model.loads().iter();
+        loads.fold(S::zero(), |sum, load| {
+            sum + load.potential_energy(self.model.masses(), &self.now.poses)
+        })
+    }
+
+    fn elastic_energy(&self) -> S {
+        let touches = self.now.touches.iter().zip(self.model.clearances());
+        touches.fold(S::zero(), |sum, (touch, law)| match touch {
+            Some(touch) => sum + law.normal.energy(touch.gap.depth),
+            None => sum,
+        })
+    }
+}
+
+fn doubles<S: Scalar>(v: Vector<S>) -> [f64; 2] {
+    [v.x.to_f64(), v.y.to_f64()]
+}

@@ -1,0 +1,109 @@
+//! Poses and motions of every body, from time, coordinates and velocities.
+
+use super::Mechanism;
+use super::layout::Role;
+use crate::dae::{State, Turn};
+use crate::plane::{Motion, Pose, Vector};
+use crate::scalar::Scalar;
+
+impl<S: Scalar> Mechanism<S> {
+    /// Places every body at a state.
+    #[inline(always)]
+    pub(super) fn place(&mut self, state: &State<'_, S>) {
+        self.now.time = state.time;
+        self.place_driven(state.time, state.turns);
+        for (body, role) in self.layout.roles.iter().enumerate() {
+            let Role::Free(at) = *role else { continue };
+            let (q, v) = (&state.q[at..at + 3], &state.v[at..at + 3]);
+            let position = Vector::new(q[0], q[1]);
+            self.now.poses[body] = match state.turns {
+                Some(turns) => turned(position, q[2], turns[body - 1]),
+                None => Pose::new(position, q[2]),
+            };
+            self.now.motions[body] = Motion { linear: Vector::new(v[0], v[1]), angular: v[2] };
+        }
+    }
+
+    /// Places the bodies whose motion is prescribed, their accelerations included.
+    #[inline(always)]
+    fn place_driven(&mut self, time: S, turns: Option<&[Turn<S>]>) {
+        for driven in &self.layout.driven {
+            let (pair, law) = self.driving(driven.drive);
+            let (s_base, s_own, sign) = match driven.second {
+                true => (pair.s_i, pair.s_j, S::one()),
+                false => (pair.s_j, pair.s_i, -S::one()),
+            };
+            let (base, motion) = (self.now.poses[driven.base], self.now.motions[driven.base]);
+            let acceleration = self.now.accelerations[driven.base];
+            let angle = base.angle + sign * law.angle(time);
+            let turn = match turns {
+                Some(turns) => turns[driven.body - 1],
+                None => {
+                    let (sin, cos) = law.wrapped_angle(time).sin_cos();
+                    let sin = sign * sin;
+                    Turn {
+                        cos: base.cos * cos - base.sin * sin,
+                        sin: base.sin * cos + base.cos * sin,
+                    }
+                }
+            };
+            let rate = motion.angular + sign * law.rate();
+            let mut pose = turned(Vector::zero(), angle, turn);
+            let (arm_base, arm) = (base.rotate(s_base), pose.rotate(s_own));
+            pose.position = base.position + arm_base - arm;
+            self.now.poses[driven.body] = pose;
+            self.now.motions[driven.body] =
+                Motion { linear: motion.at(arm_base) - arm.turned() * rate, angular: rate };
+            // drives of constant speed: no angular acceleration anywhere along the chain
+            self.now.accelerations[driven.body] = Motion {
+                linear: acceleration.linear - arm_base * (motion.angular * motion.angular)
+                    + arm * (rate * rate),
+                angular: S::zero(),
+            };
+        }
+    }
+
+    /// Angles of every body but the ground (rad).
+    pub(super) fn angles(&self, time: S, q: &[S], angles: &mut [S]) {
+        let mut of = |body: usize, angle: S| angles[body - 1] = angle;
+        for (body, role) in self.layout.roles.iter().enumerate() {
+            if let Role::Free(at) = *role {
+                of(body, q[at + 2]);
+            }
+        }
+        for driven in &self.layout.driven {
+            let law = self.driving(driven.drive).1;
+            let base = if driven.base == 0 { S::zero() } else { angles[driven.base - 1] };
+            let turned = law.wrapped_angle(time);
+            angles[driven.body - 1] = if driven.second { base + turned } else { base - turned };
+        }
+    }
+
+    /// Angular rates of every body but the ground (rad/s).
+    pub(super) fn angular_rates(&self, v: &[S], rates: &mut [S]) {
+        for (body, role) in self.layout.roles.iter().enumerate() {
+            if let Role::Free(at) = *role {
+                rates[body - 1] = v[at + 2];
+            }
+        }
+        for driven in &self.layout.driven {
+            let rate = self.driving(driven.drive).1.rate();
+            let base = if driven.base == 0 { S::zero() } else { rates[driven.base - 1] };
+            rates[driven.body - 1] = if driven.second { base + rate } else { base - rate };
+        }
+    }
+
+    /// Points and law of a drive.
+    #[inline(always)]
+    pub(super) fn driving(
+        &self,
+        drive: usize,
+    ) -> (crate::joint::Pair<S>, crate::joint::SpeedDrive<S>) {
+        let drive = &self.model.drives()[drive];
+        (self.model.joints()[drive.joint].pair, drive.law)
+    }
+}
+
+fn turned<S: Scalar>(position: Vector<S>, angle: S, turn: Turn<S>) -> Pose<S> {
+    Pose { position, angle, cos: turn.cos, sin: turn.sin }
+}

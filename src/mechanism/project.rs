@@ -1,0 +1,80 @@
+//! Back onto the constraints, by the smallest mass-weighted change.
+//! ```text
+//! q ← q − M⁻¹ Φ_qᵀ (Φ_q M⁻¹ Φ_qᵀ)⁻¹ Φ,   v ← v − M⁻¹ Φ_qᵀ (Φ_q M⁻¹ Φ_qᵀ)⁻¹ Φ̇
+//! ```
+
+use super::Mechanism;
+use crate::dae::{Fault, State};
+use crate::linear;
+use crate::scalar::Scalar;
+
+const MOST_ITERATIONS: usize = 20;
+
+impl<S: Scalar> Mechanism<S> {
+    /// Projects q and v; returns the largest |Φ| found (m, rad).
+    pub(super) fn project_onto_constraints(
+        &mut self,
+        time: S,
+        q: &mut [S],
+        v: &mut [S],
+    ) -> Result<f64, Fault> {
+        if self.layout.rows == 0 {
+            return Ok(0.0);
+        }
+        let good = S::from_f64(4.0 * S::EPSILON * self.length);
+        let mut drift = None;
+        let mut last = S::from_f64(f64::INFINITY);
+        for _ in 0..MOST_ITERATIONS {
+            self.place(&State { time, q, v, turns: None });
+            let error = self.position_errors();
+            drift.get_or_insert(error.to_f64());
+            // below `good` there is nothing but rounding; no gain means the same
+            if error <= good || !(error < last) {
+                break;
+            }
+            last = error;
+            self.correct(q)?;
+        }
+        self.place(&State { time, q, v, turns: None });
+        self.velocity_errors();
+        self.correct(v)?;
+        Ok(drift.unwrap_or(0.0))
+    }
+
+    /// Fills λ with Φ; returns the largest of them.
+    pub(super) fn position_errors(&mut self) -> S {
+        let now = &mut self.now;
+        for row in &self.layout.constraints {
+            let error = &mut now.lambda[row.first..row.first + row.constraint.rows()];
+            row.constraint.position_error(now.time, &now.poses, error);
+        }
+        now.lambda.iter().fold(S::zero(), |largest, error| largest.max(error.abs()))
+    }
+
+    /// Fills λ with Φ̇.
+    fn velocity_errors(&mut self) {
+        let now = &mut self.now;
+        for row in &self.layout.constraints {
+            let error = &mut now.lambda[row.first..row.first + row.constraint.rows()];
+            row.constraint.velocity_error(&now.poses, &now.motions, error);
+        }
+    }
+
+    /// Subtracts M⁻¹ Φ_qᵀ (Φ_q M⁻¹ Φ_qᵀ)⁻¹ λ.
+    fn correct(&mut self, x: &mut [S]) -> Result<(), Fault> {
+        self.factor().map_err(|singular| self.singular(singular))?;
+        linear::solve_symmetric(&self.now.matrix, self.layout.rows, &mut self.now.lambda);
+        for row in &self.layout.constraints {
+            let lambda = &self.now.lambda[row.first..row.first + row.constraint.rows()];
+            let on = row.constraint.wrenches(&self.now.poses, lambda);
+            for (body, wrench) in row.constraint.bodies().into_iter().zip(on) {
+                let super::layout::Role::Free(at) = self.layout.roles[body] else { continue };
+                let change = [wrench.force.x, wrench.force.y, wrench.moment];
+                for (c, change) in change.into_iter().enumerate() {
+                    x[at + c] += change * self.inverse_masses[at + c];
+                }
+            }
+        }
+        Ok(())
+    }
+}

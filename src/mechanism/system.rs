@@ -1,0 +1,192 @@
+//! The mechanism as every engine sees it.
+
+use super::Mechanism;
+use super::layout::Role;
+use crate::clearance::Mode;
+use crate::dae::{Fault, State, System, Watch};
+use crate::linear::Singular;
+use crate::scalar::Scalar;
+
+/// The mechanism cannot be solved where it stands.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[error(
+    "the constraints of {joint} depend on the others at t = {time:e} s: the mechanism stands in a \
+     singular position (a dead centre)"
+)]
+pub struct SingularPosition {
+    /// Key of the joint.
+    pub joint: String,
+    /// Time (s).
+    pub time: f64,
+}
+
+impl<S: Scalar> Mechanism<S> {
+    pub(super) fn singular(&self, Singular { row }: Singular) -> Fault {
+        if self.now.poses.iter().any(|pose| !pose.cos.is_finite() || !pose.position.x.is_finite()) {
+            return Fault::TryShorterStep("a coordinate is not finite".into());
+        }
+        let joint = self.layout.key(&self.model, row).to_string();
+        Fault::Fatal(Box::new(SingularPosition { joint, time: self.now.time.to_f64() }))
+    }
+}
+
+impl<S: Scalar> System<S> for Mechanism<S> {
+    fn coordinates(&self) -> usize {
+        self.layout.coordinates
+    }
+
+    fn multipliers(&self) -> usize {
+        self.layout.rows
+    }
+
+    fn integrals(&self) -> usize {
+        self.now.powers.len()
+    }
+
+    fn scales(&self) -> (&[f64], &[f64]) {
+        (&self.coordinate_scales, &self.velocity_scales)
+    }
+
+    fn evaluate(&mut self, state: State<'_, S>) -> Result<(), Fault> {
+        self.place(&state);
+        self.apply_loads();
+        self.solve().map_err(|singular| self.singular(singular))?;
+        self.drive();
+        self.measure_powers();
+        Ok(())
+    }
+
+    fn accelerations(&self) -> &[S] {
+        &self.now.v_dot
+    }
+
+    fn lambda(&self) -> &[S] {
+        &self.now.lambda
+    }
+
+    fn powers(&self) -> &[S] {
+        &self.now.powers
+    }
+
+    fn watches(&self) -> &[Watch] {
+        &self.watches
+    }
+
+    fn event_values(&mut self, state: State<'_, S>, values: &mut [S]) -> Result<(), Fault> {
+        self.place(&state);
+        let (poses, motions) = (&self.now.poses, &self.now.motions);
+        let mut at = 0;
+        for (k, clearance) in self.model.clearances().iter().enumerate() {
+            let gap = clearance.gap(poses, motions);
+            while let Some((_, slot)) = self.slots.get(at).filter(|(owner, _)| *owner == k) {
+                values[at] = clearance
+                    .event_value(&self.modes[k], *slot, &gap, || clearance.rates(&gap, motions));
+                at += 1;
+            }
+        }
+        Ok(())
+    }
+
+    fn event_rate(&self, slot: usize) -> S {
+        let (k, what) = self.slots[slot];
+        let clearance = &self.model.clearances()[k];
+        let now = &self.now;
+        let (gap, rates) = match &now.touches[k] {
+            Some(touch) => (touch.gap, touch.rates),
+            None => {
+                let gap = clearance.gap(&now.poses, &now.motions);
+                (gap, clearance.rates(&gap, &now.motions))
+            }
+        };
+        let second = match what {
+            crate::clearance::EventSlot::Depth => (S::zero(), S::zero()),
+            _ => clearance.second_rates(&gap, &rates, &now.motions, &now.accelerations),
+        };
+        clearance.event_rate(&self.modes[k], what, rates.rate, second)
+    }
+
+    fn project(&mut self, time: S, q: &mut [S], v: &mut [S]) -> Result<f64, Fault> {
+        self.project_onto_constraints(time, q, v)
+    }
+
+    fn turns(&self) -> usize {
+        self.layout.roles.len() - 1
+    }
+
+    fn turn_angles(&self, time: S, q: &[S], angles: &mut [S]) {
+        self.angles(time, q, angles);
+    }
+
+    fn turn_rates(&self, _time: S, v: &[S], rates: &mut [S]) {
+        self.angular_rates(v, rates);
+    }
+}
+
+/// δ̇, dF_N/dt and F_N of a contact: the first two are zero at its true extrema.
+#[derive(Debug, Clone, Copy)]
+pub struct ContactRates<S> {
+    /// Penetration δ (m).
+    pub depth: S,
+    /// Penetration rate δ̇ (m/s).
+    pub rate: S,
+    /// Normal force F_N (N).
+    pub force: S,
+    /// dF_N/dt (N/s).
+    pub force_rate: S,
+}
+
+impl<S: Scalar> Mechanism<S> {
+    /// Rates of a contact at the state last evaluated; `None` in flight.
+    pub fn contact_rates(&self, clearance: usize) -> Option<ContactRates<S>> {
+        let touch = self.now.touches[clearance].as_ref()?;
+        let (gap, rates) = (&touch.gap, &touch.rates);
+        let (acceleration, _) = self.model.clearances()[clearance].second_rates(
+            gap,
+            rates,
+            &self.now.motions,
+            &self.now.accelerations,
+        );
+        let normal = &touch.force.normal;
+        Some(ContactRates {
+            depth: gap.depth,
+            rate: rates.rate,
+            force: normal.value,
+            force_rate: normal.d_depth * rates.rate + normal.d_rate * acceleration,
+        })
+    }
+
+    /// Penetration rate and slip velocity (m/s) of a clearance at the state last evaluated; zero
+    /// where the centres coincide.
+    pub fn gap_rates(&self, clearance: usize) -> (S, S) {
+        let law = &self.model.clearances()[clearance];
+        let gap = law.gap(&self.now.poses, &self.now.motions);
+        if gap.eccentricity == S::zero() {
+            return (S::zero(), S::zero());
+        }
+        let rates = law.rates(&gap, &self.now.motions);
+        (rates.rate, rates.slip)
+    }
+
+    /// The bodies without unknowns.
+    pub(super) fn free_bodies(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
+        self.layout.roles.iter().enumerate().filter_map(|(body, role)| match role {
+            Role::Free(at) => Some((body, *at)),
+            _ => None,
+        })
+    }
+
+    /// Begins or leaves contact at the start: δ > 0, or δ = 0 and δ̇ > 0, is contact.
+    pub(super) fn choose_start_modes(&mut self) {
+        for k in 0..self.modes.len() {
+            let law = &self.model.clearances()[k];
+            let gap = law.gap(&self.now.poses, &self.now.motions);
+            let rates = law.rates(&gap, &self.now.motions);
+            let touching =
+                gap.depth > S::zero() || (gap.depth == S::zero() && rates.rate > S::zero());
+            if touching {
+                self.modes[k] = Mode::Contact(law.begin(rates.rate, rates.slip));
+            }
+        }
+        self.watch();
+    }
+}
