@@ -14,3 +14,4 @@ pub mod load;
 pub mod model;
 pub mod mechanism;
 pub mod run;
+pub mod case;

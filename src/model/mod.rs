@@ -4,10 +4,12 @@
 //! complaint. After that bodies and joints are indices, parameters are in range, and nothing
 //! below checks again.
 
+mod check;
 mod complaint;
 mod description;
 
-pub use complaint::{Complaint, KeyPath, did_you_mean};
+pub use check::check;
+pub use complaint::*;
 pub use description::*;
 
 use crate::clearance::Clearance;
@@ -82,6 +84,10 @@ impl<S: Scalar> Model<S> {
     /// # Errors
     /// Every complaint there is, each with its key.
     pub fn new(description: &Description) -> Result<Model<S>, Vec<Complaint>> {
+        let complaints = check(description);
+        if !complaints.is_empty() {
+            return Err(complaints);
+        }
         let names = names(description);
         let bodies = || description.bodies.iter();
         let with_ground = |of: fn(&BodyDescription) -> &Decimal| {
