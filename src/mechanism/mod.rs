@@ -158,6 +158,11 @@ impl<S: Scalar> Mechanism<S> {
         self.length
     }
 
+    /// The largest angular rate of any body at the state last evaluated (rad/s).
+    pub fn fastest_turn(&self) -> f64 {
+        self.now.motions.iter().map(|m| m.angular.abs().to_f64()).fold(0.0, f64::max)
+    }
+
     /// What event function `slot` watches: the clearance and what of it.
     pub fn slot(&self, slot: usize) -> (usize, EventSlot) {
         self.slots[slot]

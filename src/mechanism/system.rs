@@ -122,7 +122,7 @@ impl<S: Scalar> System<S> for Mechanism<S> {
     }
 }
 
-/// δ̇, dF_N/dt and F_N of a contact: the first two are zero at its true extrema.
+/// Penetration and force of a contact, and their rates, which are zero at true extrema.
 #[derive(Debug, Clone, Copy)]
 pub struct ContactRates<S> {
     /// Penetration δ (m).
@@ -133,6 +133,8 @@ pub struct ContactRates<S> {
     pub force: S,
     /// dF_N/dt (N/s).
     pub force_rate: S,
+    /// ∂F_N/∂δ (N/m).
+    pub slope: S,
 }
 
 impl<S: Scalar> Mechanism<S> {
@@ -152,6 +154,7 @@ impl<S: Scalar> Mechanism<S> {
             rate: rates.rate,
             force: normal.value,
             force_rate: normal.d_depth * rates.rate + normal.d_rate * acceleration,
+            slope: normal.d_depth,
         })
     }
 

@@ -1,3 +1,405 @@
-//! The loop over segments.
+//! The loop over segments: advance, record, project, switch mode, restart.
+//!
+//! Samples are taken from the state that the engine has inside its last step, projected onto the
+//! constraints, with accelerations, multipliers and forces solved afresh. At an event the state
+//! that the engine returns is projected, never polished, and the new mode is latched from it.
+
+mod kinematic;
+mod peak;
 mod recorder;
+mod schedule;
+mod touching;
+
+pub use kinematic::kinematic;
 pub use recorder::*;
+pub use schedule::Schedule;
+
+use crate::clearance::{EventSlot, Mode};
+use crate::dae::{Advance, Engine, Fault, Snapshot, State, System};
+use crate::mechanism::Mechanism;
+use crate::scalar::Scalar;
+use std::ops::ControlFlow;
+use touching::{Contacts, Touching};
+
+/// Drift off the constraints that has the state projected and the engine restarted, over the
+/// mechanism's characteristic length.
+const DRIFT: f64 = 5e-12;
+/// Steps between two looks at the drift.
+const DRIFT_EVERY: u64 = 50;
+/// Steps between two words of progress.
+const PROGRESS_EVERY: u64 = 256;
+
+/// Why a run stopped short.
+#[derive(Debug, thiserror::Error)]
+pub enum Error<E: std::error::Error + 'static, R: std::error::Error + 'static> {
+    /// The engine gave up.
+    #[error("the simulation stopped at t = {time:e} s, in segment {segment}")]
+    Engine {
+        /// Where the run stood (s).
+        time: f64,
+        /// Number of the segment between two events, from 1.
+        segment: u64,
+        /// What the engine says.
+        source: E,
+    },
+    /// The mechanism could not be evaluated.
+    #[error("the mechanism could not be evaluated at t = {time:e} s")]
+    System {
+        /// Where (s).
+        time: f64,
+        /// What the mechanism says.
+        source: Fault,
+    },
+    /// What was to be kept could not be.
+    #[error(transparent)]
+    Recorder(R),
+    /// Whoever watches asked to stop.
+    #[error("interrupted at t = {time:e} s")]
+    Interrupted {
+        /// Where the run stood (s).
+        time: f64,
+    },
+}
+
+/// How far a run is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Progress {
+    /// Simulated time (s).
+    pub time: f64,
+    /// Length of the last step (s).
+    pub step: f64,
+    /// Steps so far.
+    pub steps: u64,
+    /// Events so far.
+    pub events: u64,
+}
+
+/// How often the rulings of the mechanism were called on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct RulingCounts {
+    /// Contacts that began slower than their `minimum_impact_rate`.
+    pub slow_approaches: u64,
+    /// Contacts in which the law pulled.
+    pub tensions: u64,
+}
+
+/// Who watches a run: is told of its progress, and may stop it.
+pub type Watcher<'a> = &'a mut dyn FnMut(&Progress) -> ControlFlow<()>;
+
+/// Result of a run that uses engine `E` and recorder `R`.
+type Outcome<T, S, E, R> = Result<T, Error<<E as Engine<S>>::Error, <R as Recorder>::Error>>;
+
+/// A run in progress.
+struct Run<'a, S: Scalar, E: Engine<S>, R> {
+    engine: &'a mut E,
+    recorder: &'a mut R,
+    schedule: &'a Schedule,
+    /// Relative tolerance of the engine: what it makes of a steady force is no peak.
+    tolerance: f64,
+    next_sample: u64,
+    scratch: Snapshot<S>,
+    touching: Vec<Option<Touching<S>>>,
+    contacts: Contacts,
+    peaks: Vec<Peak>,
+    progress: Progress,
+    segment: u64,
+    counts: RulingCounts,
+}
+
+/// Runs a mechanism from its start to the end of the schedule.
+///
+/// `tolerance` is the relative tolerance the engine works to.
+///
+/// # Errors
+/// See [`Error`]; what was recorded until then stays recorded.
+pub fn run<S, E, R>(
+    engine: &mut E,
+    schedule: &Schedule,
+    tolerance: f64,
+    recorder: &mut R,
+    watch: Watcher<'_>,
+) -> Outcome<RulingCounts, S, E, R>
+where
+    S: Scalar,
+    E: Engine<S, System = Mechanism<S>>,
+    R: Recorder,
+{
+    let start = engine.system().start().clone();
+    let mut run = Run {
+        scratch: start.clone(),
+        touching: vec![None; engine.system().modes().len()],
+        engine,
+        recorder,
+        schedule,
+        tolerance,
+        next_sample: 0,
+        contacts: Contacts::default(),
+        peaks: Vec::new(),
+        progress: Progress { time: 0.0, step: 0.0, steps: 0, events: 0 },
+        segment: 1,
+        counts: RulingCounts::default(),
+    };
+    run.restart(&start)?;
+    let going = run.go(watch);
+    // contacts still open and peaks not settled belong to what was simulated, however it ended
+    let closing = run.close();
+    going.and(closing).map(|()| run.counts)
+}
+
+impl<S, E, R> Run<'_, S, E, R>
+where
+    S: Scalar,
+    E: Engine<S, System = Mechanism<S>>,
+    R: Recorder,
+{
+    fn go(&mut self, watch: Watcher<'_>) -> Outcome<(), S, E, R> {
+        self.begin_contacts()?;
+        self.sample()?;
+        let end: S = self.schedule.duration();
+        while self.engine.now().time < end {
+            let advance = self.engine.step(end).map_err(|source| self.stopped(source))?;
+            self.progress.steps += 1;
+            self.follow_contacts()?;
+            self.sample()?;
+            match advance {
+                Advance::Event => self.event()?,
+                Advance::Stepped if self.progress.steps % DRIFT_EVERY == 0 => self.hold()?,
+                Advance::Stepped => {}
+            }
+            if self.progress.steps % PROGRESS_EVERY == 0 {
+                self.tell(watch)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn tell(&mut self, watch: Watcher<'_>) -> Outcome<(), S, E, R> {
+        let time = self.engine.now().time;
+        self.progress.time = time.to_f64();
+        self.progress.step = (time - self.engine.began()).to_f64();
+        match watch(&self.progress) {
+            ControlFlow::Continue(()) => Ok(()),
+            ControlFlow::Break(()) => Err(Error::Interrupted { time: self.progress.time }),
+        }
+    }
+
+    fn stopped(&self, source: E::Error) -> Error<E::Error, R::Error> {
+        Error::Engine { time: self.engine.now().time.to_f64(), segment: self.segment, source }
+    }
+
+    fn restart(&mut self, at: &Snapshot<S>) -> Outcome<(), S, E, R> {
+        self.engine.restart(at).map_err(|source| self.stopped(source))
+    }
+
+    /// Records every sample due up to now.
+    fn sample(&mut self) -> Outcome<(), S, E, R> {
+        while self.next_sample < self.schedule.len() {
+            let time: S = self.schedule.time(self.next_sample);
+            if time > self.engine.now().time {
+                break;
+            }
+            self.look(time, true)?;
+            let at = self.schedule.time(self.next_sample);
+            let observation = self.engine.system().observe(at, &self.scratch.integrals);
+            self.recorder.sample(&observation).map_err(Error::Recorder)?;
+            self.next_sample += 1;
+        }
+        Ok(())
+    }
+
+    /// Has the system evaluated at a time within the last step; the state stands in `scratch`.
+    fn look(&mut self, time: S, project: bool) -> Outcome<(), S, E, R> {
+        self.engine.within(time, &mut self.scratch).map_err(|source| self.stopped(source))?;
+        if project {
+            self.project()?;
+        }
+        self.evaluate()
+    }
+
+    /// Projects the state in `scratch`; returns how far it was off.
+    fn project(&mut self) -> Outcome<f64, S, E, R> {
+        let Snapshot { time, q, v, .. } = &mut self.scratch;
+        let system = self.engine.system();
+        let at = time.to_f64();
+        system.project(*time, q, v).map_err(|source| Error::System { time: at, source })
+    }
+
+    /// Evaluates the system at the state in `scratch`.
+    fn evaluate(&mut self) -> Outcome<(), S, E, R> {
+        let Snapshot { time, q, v, .. } = &self.scratch;
+        let state = State { time: *time, q, v, turns: None };
+        let evaluated = self.engine.system().evaluate(state);
+        evaluated.map_err(|source| Error::System { time: self.scratch.time.to_f64(), source })
+    }
+
+    /// Restarts from the projected state once the trajectory has drifted off the constraints.
+    fn hold(&mut self) -> Outcome<(), S, E, R> {
+        if self.engine.system().multipliers() == 0 {
+            return Ok(());
+        }
+        self.scratch.clone_from(self.engine.now());
+        let drift = self.project()?;
+        if drift > DRIFT * self.engine.system().length() {
+            let state = self.scratch.clone();
+            self.restart(&state)?;
+            self.segment += 1;
+        }
+        Ok(())
+    }
+
+    /// Takes every event that fired: records it, switches the mode, restarts.
+    fn event(&mut self) -> Outcome<(), S, E, R> {
+        self.scratch.clone_from(self.engine.now());
+        self.project()?;
+        self.evaluate()?;
+        let fired: Vec<usize> =
+            (0..self.engine.fired().len()).filter(|slot| self.engine.fired()[*slot]).collect();
+        let mut begun = Vec::new();
+        for slot in fired {
+            let (k, what) = self.engine.system().slot(slot);
+            let was_flight = self.engine.system().modes()[k] == Mode::Flight;
+            if was_flight && what != EventSlot::Depth {
+                // the contact that this function belongs to has just ended
+                continue;
+            }
+            self.record_event(k, what, was_flight)?;
+            self.engine.system().switch(slot);
+            match (what, was_flight) {
+                (EventSlot::Depth, true) => begun.push(k),
+                (EventSlot::Depth, false) => self.end_contact(k)?,
+                _ => {}
+            }
+        }
+        let state = self.scratch.clone();
+        self.restart(&state)?;
+        self.segment += 1;
+        for k in begun {
+            self.begin_contact(k)?;
+        }
+        self.refresh_contacts();
+        self.flush()
+    }
+
+    fn record_event(
+        &mut self,
+        clearance: usize,
+        what: EventSlot,
+        was_flight: bool,
+    ) -> Outcome<(), S, E, R> {
+        let (rate, slip) = self.engine.system().gap_rates(clearance);
+        let (kind, rate) = match what {
+            EventSlot::Depth if was_flight => (EventKind::ContactBegins, rate),
+            EventSlot::Depth => (EventKind::ContactEnds, rate),
+            EventSlot::LowerEdge | EventSlot::UpperEdge => (EventKind::FrictionKink, slip),
+            EventSlot::Pull => (EventKind::Tension, rate),
+        };
+        self.progress.events += 1;
+        let time = self.scratch.time.to_f64();
+        let event = Event { time, clearance, kind, rate: rate.to_f64() };
+        self.recorder.event(event).map_err(Error::Recorder)
+    }
+
+    /// Contacts that the start is in already.
+    fn begin_contacts(&mut self) -> Outcome<(), S, E, R> {
+        for k in 0..self.touching.len() {
+            if self.engine.system().modes()[k] != Mode::Flight {
+                self.record_event(k, EventSlot::Depth, true)?;
+                self.begin_contact(k)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Opens a contact at the state last evaluated, which is that of a restart.
+    fn begin_contact(&mut self, k: usize) -> Outcome<(), S, E, R> {
+        let system = self.engine.system();
+        let (Mode::Contact(mode), Some(rates)) = (system.modes()[k], system.contact_rates(k))
+        else {
+            return Ok(());
+        };
+        if mode.impact_rate < system.model().clearances()[k].minimum_impact_rate {
+            self.counts.slow_approaches += 1;
+        }
+        let now = self.engine.now();
+        let begin = now.time.to_f64();
+        let number = self.contacts.open(Contact {
+            clearance: k,
+            begin,
+            end: f64::NAN,
+            impact_rate: mode.impact_rate.to_f64(),
+            peak_penetration: rates.depth.to_f64().max(0.0),
+            peak_force: rates.force.to_f64(),
+            peak_time: begin,
+            dissipated: 0.0,
+        });
+        self.touching[k] = Some(Touching::new(number, rates, now.integrals[1 + k]));
+        Ok(())
+    }
+
+    /// Closes a contact at the event in `scratch`.
+    fn end_contact(&mut self, k: usize) -> Outcome<(), S, E, R> {
+        if let Some(number) = self.touching[k].as_ref().map(|touching| touching.number) {
+            self.settle(k);
+            if let Some(contact) = self.contacts.get(number) {
+                contact.end = self.scratch.time.to_f64();
+            }
+            self.contacts.close(number);
+        }
+        Ok(())
+    }
+
+    /// Takes leave of a contact at the state in `scratch`: its last maximum, its dissipation.
+    fn settle(&mut self, k: usize) {
+        let Some(touching) = self.touching[k].take() else { return };
+        let dissipated = self.scratch.integrals[1 + k] - touching.dissipated_before;
+        self.counts.tensions += u64::from(touching.pulled);
+        if let Some(contact) = self.contacts.get(touching.number) {
+            contact.dissipated = dissipated.to_f64();
+        }
+        let noise = self.noise(touching.last.slope.to_f64());
+        self.peaks.extend(touching.unsettled(noise));
+    }
+
+    /// Rates of the open contacts at a restart, in the modes that now hold.
+    fn refresh_contacts(&mut self) {
+        for k in 0..self.touching.len() {
+            let rates = self.engine.system().contact_rates(k);
+            if let (Some(touching), Some(rates)) = (self.touching[k].as_mut(), rates) {
+                touching.last = rates;
+            }
+        }
+    }
+
+    /// Hands over contacts and peaks whose turn has come.
+    fn flush(&mut self) -> Outcome<(), S, E, R> {
+        while let Some(contact) = self.contacts.next(false) {
+            self.recorder.contact(contact).map_err(Error::Recorder)?;
+        }
+        let open = self.touching.iter().flatten().filter_map(Touching::open_since);
+        let settled_until = open.fold(f64::INFINITY, f64::min);
+        self.peaks.sort_by(|a, b| a.time.total_cmp(&b.time));
+        let settled = self.peaks.partition_point(|peak| peak.time < settled_until);
+        for peak in self.peaks.drain(..settled) {
+            self.recorder.peak(peak).map_err(Error::Recorder)?;
+        }
+        Ok(())
+    }
+
+    /// Hands over what is still open.
+    fn close(&mut self) -> Outcome<(), S, E, R> {
+        self.scratch.clone_from(self.engine.now());
+        for k in 0..self.touching.len() {
+            self.settle(k);
+        }
+        self.flush()?;
+        while let Some(contact) = self.contacts.next(true) {
+            self.recorder.contact(contact).map_err(Error::Recorder)?;
+        }
+        Ok(())
+    }
+
+    /// Force (N) that the tolerance makes of nothing, where a contact has this slope (N/m).
+    fn noise(&mut self, slope: f64) -> f64 {
+        10.0 * self.tolerance * self.engine.system().length() * slope.abs()
+    }
+}

@@ -1,6 +1,6 @@
 //! Double precision.
 
-use super::Scalar;
+use super::{F256, Scalar};
 use std::f64::consts::TAU;
 
 impl Scalar for f64 {
@@ -14,6 +14,10 @@ impl Scalar for f64 {
     #[inline(always)]
     fn to_f64(self) -> f64 {
         self
+    }
+
+    fn from_octuple(x: F256) -> f64 {
+        x.to_f64()
     }
 
     fn parse(literal: &str) -> Option<f64> {
@@ -75,7 +79,6 @@ impl Scalar for f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scalar::F256;
 
     #[test]
     fn a_crank_angle_keeps_its_places_for_a_thousand_revolutions() {

@@ -2,7 +2,7 @@
 
 pub use num_dual::Dual64;
 
-use super::Scalar;
+use super::{F256, Scalar};
 use num_dual::DualNum;
 
 impl Scalar for Dual64 {
@@ -14,6 +14,10 @@ impl Scalar for Dual64 {
 
     fn to_f64(self) -> f64 {
         self.re
+    }
+
+    fn from_octuple(x: F256) -> Dual64 {
+        Dual64::from_re(x.to_f64())
     }
 
     fn parse(literal: &str) -> Option<Dual64> {

@@ -11,7 +11,7 @@ mod octuple;
 
 pub use decimal::{Decimal, NotADecimal};
 pub use dual::Dual64;
-pub use octuple::{F256, rounded};
+pub use octuple::F256;
 
 use std::fmt::Debug;
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
@@ -44,6 +44,9 @@ pub trait Scalar:
 
     /// The nearest double (of the real part).
     fn to_f64(self) -> f64;
+
+    /// The number nearest to a 71-digit one.
+    fn from_octuple(x: F256) -> Self;
 
     /// The number a finite decimal literal means, rounded once; `None` if it is not one.
     fn parse(literal: &str) -> Option<Self>;

@@ -42,12 +42,6 @@ fn scaled(x: F256, k: i32) -> F256 {
     if k >= 0 { x.mul_pow2(k.unsigned_abs()) } else { x.div_pow2(k.unsigned_abs()) }
 }
 
-/// The double nearest to the product of a count and a step, whatever its literal's length:
-/// sample times are k · interval as decimals mean it, not as doubles multiply.
-pub fn rounded(count: u64, step: F256) -> f64 {
-    (F256::from(count) * step).to_f64()
-}
-
 impl Scalar for F256 {
     const EPSILON: f64 = 9.055_679_078_826_712e-72;
 
@@ -70,6 +64,10 @@ impl Scalar for F256 {
             bits as f64 * power_of_two(exponent + 937) * power_of_two(-1000)
         };
         if negative { -magnitude } else { magnitude }
+    }
+
+    fn from_octuple(x: F256) -> F256 {
+        x
     }
 
     fn parse(literal: &str) -> Option<F256> {
@@ -179,7 +177,7 @@ mod tests {
         let x = F256::parse("0.0737").unwrap();
         assert_eq!(x, F256::ratio(737, 10_000));
         assert_ne!(x, F256::from(0.0737));
-        assert_eq!(rounded(3, F256::parse("0.1").unwrap()), 0.3);
+        assert_eq!((F256::from(3) * F256::parse("0.1").unwrap()).to_f64(), 0.3);
     }
 
     #[test]

@@ -1,0 +1,126 @@
+//! Mechanisms without freedom: assembled at each time, nothing is integrated.
+//!
+//! Position and velocity at a time follow from the constraints alone (Newton from the last
+//! sample, on the branch that the start chose), accelerations and forces from one solve. The
+//! work of the drives is a Gauss–Legendre quadrature of their power.
+
+use super::{Error, Progress, Recorder, RulingCounts, Schedule, Watcher};
+use crate::dae::{Fault, Snapshot, State, System};
+use crate::mechanism::Mechanism;
+use crate::scalar::Scalar;
+use std::convert::Infallible;
+use std::ops::ControlFlow;
+
+/// The fastest body turns by no more than this angle (rad) from one assembly to the next.
+const LARGEST_TURN: f64 = 0.05;
+
+/// Nodes and weights of the four-point Gauss–Legendre rule on [0, 1] (Abramowitz, Stegun 1964,
+/// table 25.4), as functions of √(6/5) to have them in every arithmetic.
+fn gauss<S: Scalar>() -> [(S, S); 4] {
+    let half = S::ratio(1, 2);
+    let root = S::ratio(6, 5).sqrt() * S::ratio(2, 7);
+    let inner = (S::ratio(3, 7) - root).sqrt() * half;
+    let outer = (S::ratio(3, 7) + root).sqrt() * half;
+    let thirty = S::from_f64(30.0).sqrt();
+    let heavy = (S::from_f64(18.0) + thirty) / S::from_f64(72.0);
+    let light = (S::from_f64(18.0) - thirty) / S::from_f64(72.0);
+    [(half - outer, light), (half - inner, heavy), (half + inner, heavy), (half + outer, light)]
+}
+
+/// Runs a mechanism without freedom through its schedule.
+///
+/// # Errors
+/// See [`Error`]: a position that cannot be reached or is singular, or a recorder's.
+pub fn kinematic<S: Scalar, R: Recorder>(
+    mechanism: &mut Mechanism<S>,
+    schedule: &Schedule,
+    recorder: &mut R,
+    watch: Watcher<'_>,
+) -> Result<RulingCounts, Error<Infallible, R::Error>> {
+    let mut now = mechanism.start().clone();
+    let fastest = mechanism.fastest_turn().max(1e-300);
+    let rule = gauss();
+    let mut progress = Progress { time: 0.0, step: 0.0, steps: 0, events: 0 };
+    for k in 0..schedule.len() {
+        let time: S = schedule.time(k);
+        let span = time - now.time;
+        let parts = (span.to_f64() * fastest / LARGEST_TURN).ceil().max(1.0);
+        for part in 1..=parts as u64 {
+            let last = part as f64 == parts;
+            let to = if last {
+                time
+            } else {
+                now.time + (time - now.time) * S::from_f64(1.0 / (parts - part as f64 + 1.0))
+            };
+            advance(mechanism, &mut now, to, &rule)
+                .map_err(|source| Error::System { time: to.to_f64(), source })?;
+            progress.steps += 1;
+            progress.step = (span.to_f64()) / parts;
+            progress.time = to.to_f64();
+            if progress.steps % super::PROGRESS_EVERY == 0
+                && watch(&progress) == ControlFlow::Break(())
+            {
+                return Err(Error::Interrupted { time: progress.time });
+            }
+        }
+        let observation = mechanism.observe(schedule.time(k), &now.integrals);
+        recorder.sample(&observation).map_err(Error::Recorder)?;
+    }
+    Ok(RulingCounts::default())
+}
+
+/// Goes on to a time: work of the drives on the way, then the state there, evaluated.
+fn advance<S: Scalar>(
+    mechanism: &mut Mechanism<S>,
+    now: &mut Snapshot<S>,
+    to: S,
+    rule: &[(S, S); 4],
+) -> Result<(), Fault> {
+    let span = to - now.time;
+    if span > S::zero() {
+        let mut inside = now.clone();
+        for (node, weight) in rule {
+            reach(mechanism, &mut inside, now.time + span * *node)?;
+            for (sum, power) in now.integrals.iter_mut().zip(mechanism.powers()) {
+                *sum += span * *weight * *power;
+            }
+        }
+        let integrals = std::mem::take(&mut now.integrals);
+        *now = inside;
+        now.integrals = integrals;
+    }
+    reach(mechanism, now, to)
+}
+
+/// Moves a state to another time: along its velocity and acceleration, then onto the constraints.
+fn reach<S: Scalar>(
+    mechanism: &mut Mechanism<S>,
+    state: &mut Snapshot<S>,
+    time: S,
+) -> Result<(), Fault> {
+    let Snapshot { time: then, q, v, .. } = state;
+    let span = time - *then;
+    if span != S::zero() {
+        mechanism.evaluate(State { time: *then, q, v, turns: None })?;
+        for (k, a) in mechanism.accelerations().iter().enumerate() {
+            q[k] += span * (v[k] + span * *a * S::ratio(1, 2));
+            v[k] += span * *a;
+        }
+    }
+    mechanism.project(time, q, v)?;
+    *then = time;
+    mechanism.evaluate(State { time, q, v, turns: None })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_gauss_rule_is_exact_to_degree_seven() {
+        for degree in 0..8 {
+            let sum: f64 = gauss::<f64>().iter().map(|(x, w)| w * x.powi(degree)).sum();
+            assert!((sum - 1.0 / f64::from(degree + 1)).abs() < 4.0 * f64::EPSILON, "{degree}");
+        }
+    }
+}
