@@ -1,5 +1,6 @@
 //! What is wrong with a description, and where.
 
+use crate::scalar::Decimal;
 use std::fmt;
 
 /// The path of a key in a case file, `joints.A.clearance.radial`.
@@ -26,8 +27,18 @@ impl KeyPath {
 }
 
 impl fmt::Display for KeyPath {
+    /// Keys joined by dots; one that TOML would want quoted stands in quotes, on one line.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.0.join("."))
+        let bare = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
+        for (position, key) in self.0.iter().enumerate() {
+            let dot = if position > 0 { "." } else { "" };
+            if !key.is_empty() && key.chars().all(bare) {
+                write!(f, "{dot}{key}")?;
+            } else {
+                write!(f, "{dot}{key:?}")?;
+            }
+        }
+        Ok(())
     }
 }
 
@@ -44,6 +55,61 @@ impl fmt::Display for Complaint {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}: {}", self.key, self.message)
     }
+}
+
+/// Complaints as they are gathered.
+#[derive(Debug, Clone, Default)]
+pub struct Complaints(Vec<Complaint>);
+
+impl Complaints {
+    /// Adds a complaint about a key.
+    pub fn add(&mut self, key: KeyPath, message: impl Into<String>) {
+        self.0.push(Complaint { key, message: message.into() });
+    }
+
+    /// Complains unless the number is finite. `unit` may be empty; gives whether it is finite.
+    pub fn require_finite(&mut self, key: KeyPath, number: &Decimal, unit: &str) -> bool {
+        let finite = number.to_f64().is_finite();
+        if !finite {
+            self.add(key, format!("must be finite{}, is {number}", in_brackets(unit)));
+        }
+        finite
+    }
+
+    /// Complains unless the number is finite and `holds` for it; `what` says in words what must
+    /// hold. Gives whether it does.
+    pub fn require(
+        &mut self,
+        key: KeyPath,
+        number: &Decimal,
+        unit: &str,
+        what: &str,
+        holds: impl Fn(f64) -> bool,
+    ) -> bool {
+        if !self.require_finite(key.clone(), number, unit) {
+            return false;
+        }
+        let right = holds(number.to_f64());
+        if !right {
+            self.add(key, format!("must be {what}{}, is {number}", in_brackets(unit)));
+        }
+        right
+    }
+
+    /// Complains unless the number is positive and finite. Gives whether it is.
+    pub fn require_positive(&mut self, key: KeyPath, number: &Decimal, unit: &str) -> bool {
+        self.require(key, number, unit, "positive", |x| x > 0.0)
+    }
+
+    /// The complaints, in the order of adding.
+    pub fn into_vec(self) -> Vec<Complaint> {
+        self.0
+    }
+}
+
+/// ` (m)`, or nothing for no unit.
+pub fn in_brackets(unit: &str) -> String {
+    if unit.is_empty() { String::new() } else { format!(" ({unit})") }
 }
 
 /// ` (did you mean "follower"?)` for the known word nearest to `word`, or nothing if none is near.

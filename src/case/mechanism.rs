@@ -1,0 +1,151 @@
+//! Case file to [`Description`]: which keys describe ground, bodies, joints, drives, loads, start.
+//!
+//! A new kind of joint, drive, load or friction law is a line in the table of its kinds here, and
+//! the function that reads its keys.
+
+use super::table_reader::{ReadKind, TableReader};
+use crate::model::{
+    BodyDescription, ClearanceDescription, Description, DriveDescription, DriveKind,
+    FrictionDescription, JointDescription, JointKind, LoadDescription, LoadKind, NamedPoint,
+    NormalDescription, NormalLawName, StartDescription, StiffnessDescription, Tension,
+};
+use crate::scalar::Decimal;
+
+const JOINT_KINDS: [ReadKind<JointKind>; 1] = [("revolute", revolute)];
+
+const DRIVE_KINDS: [ReadKind<DriveKind>; 1] = [("speed", speed)];
+
+const LOAD_KINDS: [ReadKind<LoadKind>; 1] = [("gravity", gravity)];
+
+const FRICTION_LAWS: [ReadKind<FrictionDescription>; 1] = [("ambrosio", ambrosio)];
+
+const STIFFNESSES: [(&str, StiffnessDescription); 2] = [
+    ("hertz-printed", StiffnessDescription::HertzPrinted),
+    ("hertz-internal", StiffnessDescription::HertzInternal),
+];
+
+const TENSIONS: [(&str, Tension); 2] = [("keep", Tension::Keep), ("cut", Tension::Cut)];
+
+/// The mechanism that the root of a case describes.
+pub(super) fn description(root: &mut TableReader) -> Description {
+    Description {
+        ground: root.optional_table("ground", points).unwrap_or_default(),
+        bodies: root.named_tables("bodies", body),
+        joints: root.named_tables("joints", joint),
+        drives: root.named_tables("drives", drive),
+        loads: root.named_tables("loads", load).into_iter().flatten().collect(),
+        start: root.named_tables("start", start),
+    }
+}
+
+/// The points of a body or of the ground.
+fn points(owner: &mut TableReader) -> Vec<NamedPoint> {
+    let points = owner.named_values("points", "m").into_iter();
+    points.map(|(name, at)| NamedPoint { name, at }).collect()
+}
+
+fn body(name: &str, keys: &mut TableReader) -> BodyDescription {
+    BodyDescription {
+        name: name.to_owned(),
+        mass: keys.required("mass", "kg"),
+        inertia: keys.required("inertia", "kg m²"),
+        points: points(keys),
+    }
+}
+
+fn joint(name: &str, keys: &mut TableReader) -> JointDescription {
+    JointDescription {
+        name: name.to_owned(),
+        between: keys.required("between", ""),
+        kind: keys
+            .variant("kind", &JOINT_KINDS, None)
+            .unwrap_or(JointKind::Revolute { clearance: None }),
+    }
+}
+
+fn revolute(keys: &mut TableReader) -> JointKind {
+    JointKind::Revolute { clearance: keys.optional_table("clearance", clearance) }
+}
+
+fn clearance(keys: &mut TableReader) -> ClearanceDescription {
+    ClearanceDescription {
+        bearing_radius: keys.required("bearing_radius", "m"),
+        radial: keys.required("radial", "m"),
+        normal: keys.table("normal", normal),
+        tension: keys.choice("tension", &TENSIONS, Some("keep")).unwrap_or(Tension::Keep),
+        minimum_impact_rate: keys.number_or("minimum_impact_rate", "m/s", "1e-3"),
+        friction: keys.optional_table("friction", friction).flatten(),
+    }
+}
+
+fn normal(keys: &mut TableReader) -> NormalDescription {
+    let law = keys.choice("law", &NormalLawName::ALL, None);
+    let stiffness = keys.number_or_choice(
+        "stiffness",
+        "N/mⁿ",
+        &STIFFNESSES,
+        None,
+        StiffnessDescription::Number,
+    );
+    if law.is_none() || stiffness.is_none() {
+        keys.leave_unchecked(); // which other keys are wanted hangs on these two
+    }
+    NormalDescription {
+        law: law.unwrap_or(NormalLawName::Hertz),
+        restitution: keys.optional("restitution", ""),
+        stiffness: stiffness.unwrap_or(StiffnessDescription::HertzPrinted),
+        young: keys.optional("young", "Pa"),
+        poisson: keys.optional("poisson", ""),
+        exponent: keys.number_or("exponent", "", "1.5"),
+    }
+}
+
+fn friction(keys: &mut TableReader) -> Option<FrictionDescription> {
+    keys.variant("law", &FRICTION_LAWS, None)
+}
+
+fn ambrosio(keys: &mut TableReader) -> FrictionDescription {
+    FrictionDescription::Ambrosio {
+        coefficient: keys.required("coefficient", ""),
+        v0: keys.required("v0", "m/s"),
+        v1: keys.required("v1", "m/s"),
+    }
+}
+
+fn drive(name: &str, keys: &mut TableReader) -> DriveDescription {
+    let standing = || DriveKind::Speed { speed_rpm: Decimal::from(0.0), angle: Decimal::from(0.0) };
+    DriveDescription {
+        name: name.to_owned(),
+        joint: keys.required("joint", ""),
+        kind: keys.variant("kind", &DRIVE_KINDS, Some("speed")).unwrap_or_else(standing),
+    }
+}
+
+fn speed(keys: &mut TableReader) -> DriveKind {
+    DriveKind::Speed {
+        speed_rpm: keys.required("speed_rpm", "revolutions a minute"),
+        angle: keys.number_or("angle", "rad", "0.0"),
+    }
+}
+
+fn load(name: &str, keys: &mut TableReader) -> Option<LoadDescription> {
+    let kind = keys.variant("kind", &LOAD_KINDS, None)?;
+    Some(LoadDescription { name: name.to_owned(), kind })
+}
+
+fn gravity(keys: &mut TableReader) -> LoadKind {
+    LoadKind::Gravity { acceleration: keys.required("acceleration", "m/s²") }
+}
+
+fn start(body: &str, keys: &mut TableReader) -> StartDescription {
+    StartDescription {
+        body: body.to_owned(),
+        x: keys.optional("x", "m"),
+        y: keys.optional("y", "m"),
+        angle: keys.optional("angle", "rad"),
+        velocity_x: keys.optional("velocity_x", "m/s"),
+        velocity_y: keys.optional("velocity_y", "m/s"),
+        angular_velocity: keys.optional("angular_velocity", "rad/s"),
+        fixed: keys.optional("fixed", "").unwrap_or(false),
+    }
+}

@@ -1,0 +1,114 @@
+//! Case files: TOML to a mechanism and a plan, with every complaint at once.
+//!
+//! A complaint carries the line of its key, or the `--set` that set it. Complaints that only a
+//! later step can make, from the model's constructor say, get theirs from [`Case::reject`].
+
+mod changes;
+mod error;
+mod mechanism;
+mod plan;
+mod source;
+mod table_reader;
+#[cfg(test)]
+mod tests;
+
+pub use changes::{Changes, NotAnOverride, Override};
+pub use error::Error;
+pub use plan::{AbsoluteTolerance, EngineName, NormName, Plan, Precision, Sampling, SolverPlan};
+pub use source::{Located, Place};
+
+use crate::model::{Complaint, Complaints, Description, KeyPath, check};
+use source::Source;
+use std::path::Path;
+use table_reader::{Findings, TableReader};
+
+/// A case, read and checked as far as it can be without mechanics.
+#[derive(Debug, Clone)]
+pub struct Case {
+    /// Name, fit for the stem of a file's name.
+    pub name: String,
+    /// Title; may be empty.
+    pub title: String,
+    /// The mechanism.
+    pub description: Description,
+    /// How it is run.
+    pub plan: Plan,
+    /// The text as run: the file's, with the changes of the command line applied.
+    pub text: String,
+    /// Values that the program put where the case gives none, in the order of reading.
+    pub defaults: Vec<DefaultTaken>,
+    source: Source,
+}
+
+/// A value that the program put where a case gives none.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct DefaultTaken {
+    /// The key.
+    pub key: KeyPath,
+    /// The value, as a case file would have it.
+    pub value: String,
+}
+
+impl Case {
+    /// Reads and checks a case file, with changes from the command line.
+    ///
+    /// # Errors
+    /// The file cannot be read, is not TOML, or does not describe a mechanism.
+    pub fn read(path: &Path, changes: &Changes) -> Result<Case, Error> {
+        Case::from_text(path, &source::read_text(path)?, changes)
+    }
+
+    /// Reads and checks the text of a case file; `path` gives the default name, and errors tell it.
+    ///
+    /// # Errors
+    /// The text is not TOML, or does not describe a mechanism.
+    pub fn from_text(path: &Path, text: &str, changes: &Changes) -> Result<Case, Error> {
+        let source = Source::new(path, text, &changes.set)?;
+        let mut document = source::parse(path, text)?;
+        let mut text = text.to_owned();
+        if !changes.is_empty() {
+            let complaints = changes.apply(&mut document);
+            if !complaints.is_empty() {
+                return Err(source.reject(complaints));
+            }
+            // What is recorded as run is what is run: the changed text is read like any other.
+            text = document.to_string();
+            document = source::parse(path, &text)?;
+        }
+        let stem = path.file_stem().map_or(String::new(), |stem| stem.to_string_lossy().into());
+        let mut findings = Findings::default();
+        let (name, title, description, plan) =
+            TableReader::root(document.as_table(), &mut findings, |root| {
+                let name = root.optional("name", "").unwrap_or(stem);
+                let title = root.optional("title", "").unwrap_or_default();
+                (name, title, mechanism::description(root), Plan::read(root))
+            });
+        findings.add_checks(check_name(&name));
+        findings.add_checks(check(&description));
+        findings.add_checks(plan.check());
+        let (complaints, defaults) = findings.into_parts();
+        if !complaints.is_empty() {
+            return Err(source.reject(complaints));
+        }
+        Ok(Case { name, title, description, plan, text, defaults, source })
+    }
+
+    /// The error that tells complaints about this case, each with its place in what was written.
+    pub fn reject(&self, complaints: Vec<Complaint>) -> Error {
+        self.source.reject(complaints)
+    }
+}
+
+/// A case's name must serve as the stem of a file's name.
+fn check_name(name: &str) -> Vec<Complaint> {
+    let mut complaints = Complaints::default();
+    let begins = name.starts_with(|c: char| c.is_ascii_alphanumeric() || c == '_');
+    if !begins || !name.chars().all(|c| c.is_ascii_alphanumeric() || "-_.".contains(c)) {
+        let rule =
+            "letters, digits, \"-\", \"_\" and \".\", beginning with a letter, digit or \"_\"";
+        let default = "the default is the file's name without its ending";
+        complaints
+            .add(KeyPath::new(["name"]), format!("must be of {rule}, is {name:?}; {default}"));
+    }
+    complaints.into_vec()
+}

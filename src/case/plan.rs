@@ -1,0 +1,222 @@
+//! How long a case runs, what it samples, and how it is solved.
+
+use super::table_reader::TableReader;
+use crate::model::{Complaint, Complaints, KeyPath};
+use crate::scalar::Decimal;
+
+/// Rows of samples that a run may write at most.
+const MOST_SAMPLES: f64 = 1e8;
+
+/// Smallest relative tolerance of an engine that computes in doubles.
+const SMALLEST_RELATIVE_TOLERANCE: f64 = 1e-15;
+
+/// Smallest tolerance of the engine that computes with 71 digits; it needs some to spare
+/// (NUMERICS.md).
+const SMALLEST_REFERENCE_TOLERANCE: f64 = 1e-64;
+
+/// How a case is run: keys `run` and `solver`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Plan {
+    /// Simulated time (s).
+    pub duration: Decimal,
+    /// Time between samples (s).
+    pub sample_interval: Decimal,
+    /// Where samples are taken.
+    pub sampling: Sampling,
+    /// How it is solved.
+    pub solver: SolverPlan,
+}
+
+/// Where samples are taken.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Sampling {
+    /// At multiples of the sample interval.
+    Uniform,
+    /// There, and at every event, every peak, and where straight lines miss the forces.
+    Adaptive,
+}
+
+impl Sampling {
+    /// Every sampling, with its name in case files.
+    pub const ALL: [(&'static str, Sampling); 2] =
+        [("uniform", Sampling::Uniform), ("adaptive", Sampling::Adaptive)];
+}
+
+/// How a case is solved.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SolverPlan {
+    /// Which engine.
+    pub engine: EngineName,
+    /// Relative tolerance.
+    pub relative_tolerance: f64,
+    /// Absolute tolerance.
+    pub absolute_tolerance: AbsoluteTolerance,
+    /// First step after every restart (s).
+    pub initial_step: f64,
+    /// Longest step (s); may be infinite.
+    pub max_step: f64,
+    /// Arithmetic.
+    pub precision: Precision,
+    /// Tolerance of the engine in 71-digit arithmetic, in place of the relative one.
+    pub reference_tolerance: f64,
+    /// Norm of the local error.
+    pub norm: NormName,
+}
+
+/// Names of the engines.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum EngineName {
+    /// SUNDIALS IDA.
+    Ida,
+    /// Explicit, of high order.
+    Explicit,
+}
+
+impl EngineName {
+    /// Every engine, with its name in case files.
+    pub const ALL: [(&'static str, EngineName); 2] =
+        [("ida", EngineName::Ida), ("explicit", EngineName::Explicit)];
+}
+
+/// Absolute tolerance of the unknowns.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum AbsoluteTolerance {
+    /// One number for all, in the unit of each unknown.
+    Scalar(f64),
+    /// 0.01 · relative tolerance · typical size of each unknown.
+    Scaled,
+}
+
+/// The arithmetic of a run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Precision {
+    /// Doubles, 16 digits.
+    Double,
+    /// Floats of 71 digits.
+    Octuple,
+}
+
+/// Norms of the local error.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum NormName {
+    /// Largest component against max(relative tolerance · |y|, absolute tolerance), as MATLAB's
+    /// ode15s has it.
+    Ode15s,
+    /// Weighted root mean square, IDA's own.
+    Wrms,
+}
+
+impl NormName {
+    /// Every norm, with its name in case files.
+    pub const ALL: [(&'static str, NormName); 2] =
+        [("ode15s", NormName::Ode15s), ("wrms", NormName::Wrms)];
+}
+
+impl Plan {
+    /// Reads the keys `run` and `solver` of a case's root.
+    pub(super) fn read(root: &mut TableReader) -> Plan {
+        let (duration, sample_interval, sampling) = root.table("run", |keys| {
+            (
+                keys.required("duration", "s"),
+                keys.required("sample_interval", "s"),
+                keys.choice("sampling", &Sampling::ALL, Some("uniform")),
+            )
+        });
+        Plan {
+            duration,
+            sample_interval,
+            sampling: sampling.unwrap_or(Sampling::Uniform),
+            solver: root.table_of_defaults("solver", SolverPlan::read),
+        }
+    }
+
+    /// What is wrong with the numbers of the plan.
+    pub(super) fn check(&self) -> Vec<Complaint> {
+        let mut complaints = Complaints::default();
+        self.check_samples(&mut complaints);
+        self.solver.check_tolerances(&mut complaints);
+        self.solver.check_steps(&mut complaints);
+        complaints.into_vec()
+    }
+
+    fn check_samples(&self, complaints: &mut Complaints) {
+        let run = KeyPath::new(["run"]);
+        let (duration, interval) = (&self.duration, &self.sample_interval);
+        let duration_right = complaints.require_positive(run.key("duration"), duration, "s");
+        let key = run.key("sample_interval");
+        let interval_right = complaints.require_positive(key.clone(), interval, "s");
+        let rows = duration.to_f64() / interval.to_f64();
+        if duration_right && interval_right && rows > MOST_SAMPLES {
+            let rows = format!("a run of {duration} s would write {rows:.3e} rows of samples");
+            let limit = format!("at most {MOST_SAMPLES:e} are written");
+            complaints.add(key, format!("is too small (s), {interval}: {rows}, {limit}"));
+        }
+    }
+}
+
+impl SolverPlan {
+    fn read(keys: &mut TableReader) -> SolverPlan {
+        let engine = keys.choice("engine", &EngineName::ALL, Some("ida"));
+        let scalar = |number: Decimal| AbsoluteTolerance::Scalar(number.to_f64());
+        let words = [("scaled", AbsoluteTolerance::Scaled)];
+        let absolute =
+            keys.number_or_choice("absolute_tolerance", "", &words, Some("1e-20"), scalar);
+        let norm = keys.choice("norm", &NormName::ALL, Some("ode15s"));
+        SolverPlan {
+            precision: precision(keys, engine),
+            engine: engine.unwrap_or(EngineName::Ida),
+            relative_tolerance: keys.number_or("relative_tolerance", "", "1e-12").to_f64(),
+            absolute_tolerance: absolute.unwrap_or(AbsoluteTolerance::Scaled),
+            initial_step: keys.number_or("initial_step", "s", "1e-10").to_f64(),
+            max_step: keys.number_or("max_step", "s", "inf").to_f64(),
+            reference_tolerance: keys.number_or("reference_tolerance", "", "1e-60").to_f64(),
+            norm: norm.unwrap_or(NormName::Ode15s),
+        }
+    }
+
+    fn check_tolerances(&self, complaints: &mut Complaints) {
+        let solver = KeyPath::new(["solver"]);
+        let mut require = |name: &str, number: f64, least: f64| {
+            let range = format!("at least {least:e} and less than 1");
+            let holds = |x: f64| x >= least && x < 1.0;
+            complaints.require(solver.key(name), &Decimal::from(number), "", &range, holds);
+        };
+        require("relative_tolerance", self.relative_tolerance, SMALLEST_RELATIVE_TOLERANCE);
+        require("reference_tolerance", self.reference_tolerance, SMALLEST_REFERENCE_TOLERANCE);
+        if let AbsoluteTolerance::Scalar(tolerance) = self.absolute_tolerance {
+            let (key, range) = (solver.key("absolute_tolerance"), "greater than 0 and less than 1");
+            let holds = |x: f64| x > 0.0 && x < 1.0;
+            complaints.require(key, &Decimal::from(tolerance), "", range, holds);
+        }
+    }
+
+    fn check_steps(&self, complaints: &mut Complaints) {
+        let solver = KeyPath::new(["solver"]);
+        let initial = Decimal::from(self.initial_step);
+        complaints.require_positive(solver.key("initial_step"), &initial, "s");
+        if self.max_step != f64::INFINITY {
+            let longest = Decimal::from(self.max_step);
+            complaints.require_positive(solver.key("max_step"), &longest, "s");
+        }
+    }
+}
+
+/// The key `precision`, which the engine must be able to give.
+fn precision(keys: &mut TableReader, engine: Option<EngineName>) -> Precision {
+    let key = "precision";
+    let digits = keys.number_or(key, "digits", "16");
+    match digits.to_f64() {
+        71.0 if engine == Some(EngineName::Ida) => {
+            keys.complain(key, "71 digits need engine \"explicit\"".to_owned());
+            Precision::Octuple
+        }
+        71.0 => Precision::Octuple,
+        16.0 => Precision::Double,
+        wrong => {
+            if !wrong.is_nan() {
+                keys.complain(key, format!("must be 16 or 71 (digits), is {digits}"));
+            }
+            Precision::Double
+        }
+    }
+}

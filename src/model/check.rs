@@ -1,0 +1,377 @@
+//! Everything about a description that can be checked without mechanics: names, ranges, and
+//! whether what is named exists.
+
+use super::{
+    BodyDescription, ClearanceDescription, Complaint, Complaints, Description, DriveDescription,
+    DriveKind, FrictionDescription, JointDescription, JointKind, KeyPath, LoadDescription,
+    LoadKind, NamedPoint, NormalDescription, NormalLawName, StartDescription, StiffnessDescription,
+    did_you_mean,
+};
+use crate::scalar::Decimal;
+use std::collections::HashSet;
+
+/// The word that stands for the ground where a body may be named.
+const GROUND: &str = "ground";
+
+/// Everything wrong with a description, in the order of its lists; empty if it is sound.
+///
+/// Whether the mechanism can be assembled, and whether its drives and start fit it, is not
+/// looked at here.
+pub fn check(description: &Description) -> Vec<Complaint> {
+    let mut complaints = Complaints::default();
+    check_points(&mut complaints, &KeyPath::new([GROUND]), &description.ground);
+    check_bodies(&mut complaints, &description.bodies);
+    check_names(
+        &mut complaints,
+        &KeyPath::new(["joints"]),
+        description.joints.iter().map(|joint| &joint.name),
+    );
+    for joint in &description.joints {
+        check_joint(&mut complaints, description, joint);
+    }
+    check_drives(&mut complaints, description);
+    check_names(
+        &mut complaints,
+        &KeyPath::new(["loads"]),
+        description.loads.iter().map(|load| &load.name),
+    );
+    for load in &description.loads {
+        check_load(&mut complaints, load);
+    }
+    check_starts(&mut complaints, description);
+    complaints.into_vec()
+}
+
+/// Names are words, and each stands once.
+fn check_names<'a>(
+    complaints: &mut Complaints,
+    list: &KeyPath,
+    names: impl Iterator<Item = &'a String>,
+) {
+    let mut seen = HashSet::new();
+    for name in names {
+        if !is_name(name) {
+            let rule = "a letter or underscore, then letters, digits and underscores";
+            complaints.add(list.key(name), format!("the name {name:?} must be {rule}"));
+        }
+        if !seen.insert(name) {
+            complaints.add(list.key(name), "stands there twice");
+        }
+    }
+}
+
+/// Whether the word matches `[A-Za-z_][A-Za-z0-9_]*`.
+fn is_name(word: &str) -> bool {
+    !word.starts_with(|c: char| c.is_ascii_digit())
+        && !word.is_empty()
+        && word.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
+}
+
+/// The points of the body or ground at `owner`.
+fn check_points(complaints: &mut Complaints, owner: &KeyPath, points: &[NamedPoint]) {
+    let list = owner.key("points");
+    check_names(complaints, &list, points.iter().map(|point| &point.name));
+    for point in points {
+        check_vector(complaints, list.key(&point.name), &point.at, "m");
+    }
+}
+
+/// Both components are finite; complains once.
+fn check_vector(complaints: &mut Complaints, key: KeyPath, vector: &[Decimal; 2], unit: &str) {
+    if let Some(component) = vector.iter().find(|component| !component.to_f64().is_finite()) {
+        complaints.require_finite(key, component, unit);
+    }
+}
+
+fn check_bodies(complaints: &mut Complaints, bodies: &[BodyDescription]) {
+    let list = KeyPath::new(["bodies"]);
+    if bodies.is_empty() {
+        complaints.add(list.clone(), "there must be at least one body");
+    }
+    check_names(complaints, &list, bodies.iter().map(|body| &body.name));
+    for body in bodies {
+        let key = list.key(&body.name);
+        if body.name == GROUND {
+            complaints
+                .add(key.clone(), "no body may be called \"ground\": that is the fixed frame");
+        }
+        complaints.require_positive(key.key("mass"), &body.mass, "kg");
+        complaints.require_positive(key.key("inertia"), &body.inertia, "kg m²");
+        check_points(complaints, &key, &body.points);
+    }
+}
+
+fn check_joint(complaints: &mut Complaints, description: &Description, joint: &JointDescription) {
+    let key = KeyPath::new(["joints", &joint.name]);
+    check_between(complaints, description, key.key("between"), &joint.between);
+    match &joint.kind {
+        JointKind::Revolute { clearance: Some(clearance) } => {
+            check_clearance(complaints, &key.key("clearance"), clearance);
+        }
+        JointKind::Revolute { clearance: None } => {}
+    }
+}
+
+/// Both ends exist, on two bodies.
+fn check_between(
+    complaints: &mut Complaints,
+    description: &Description,
+    key: KeyPath,
+    between: &[String; 2],
+) {
+    let connects = format!("connects {:?} to {:?}", between[0], between[1]);
+    let mut bodies = Vec::new();
+    for end in between {
+        match find_point(description, end) {
+            Ok(body) => bodies.push(body),
+            Err(reason) => complaints.add(key.clone(), format!("{connects}; {reason}")),
+        }
+    }
+    if bodies.len() == 2 && bodies[0] == bodies[1] {
+        let reason = "a joint cannot join a body to itself";
+        complaints.add(key, format!("{connects}; {reason}"));
+    }
+}
+
+/// The body that owns the point written `body.point`, or why there is no such point.
+fn find_point<'a>(description: &Description, point: &'a str) -> Result<&'a str, String> {
+    let Some((body, name)) = point.split_once('.') else {
+        return Err(format!("{point:?} is not written body.point"));
+    };
+    let known_bodies = || description.bodies.iter().map(|body| body.name.as_str());
+    let points = match description.bodies.iter().find(|known| known.name == body) {
+        _ if body == GROUND => &description.ground,
+        Some(known) => &known.points,
+        None => {
+            let near = did_you_mean(body, known_bodies().chain([GROUND]));
+            return Err(format!("there is no body {body:?}{near}"));
+        }
+    };
+    if points.iter().any(|known| known.name == name) {
+        return Ok(body);
+    }
+    let near = did_you_mean(name, points.iter().map(|known| known.name.as_str()));
+    let owner = if body == GROUND { "the ground".into() } else { format!("body {body:?}") };
+    Err(format!("{owner} has no point {name:?}{near}"))
+}
+
+fn check_clearance(complaints: &mut Complaints, key: &KeyPath, clearance: &ClearanceDescription) {
+    let (bearing, radial) = (&clearance.bearing_radius, &clearance.radial);
+    let bearing_right = complaints.require_positive(key.key("bearing_radius"), bearing, "m");
+    let radial_right = complaints.require_positive(key.key("radial"), radial, "m");
+    if bearing_right && radial_right && radial.to_f64() >= bearing.to_f64() {
+        let message = format!("must be less than bearing_radius, {bearing} (m), is {radial}");
+        complaints.add(key.key("radial"), message);
+    }
+    let rate = &clearance.minimum_impact_rate;
+    complaints.require_positive(key.key("minimum_impact_rate"), rate, "m/s");
+    check_normal(complaints, &key.key("normal"), &clearance.normal);
+    if let Some(friction) = &clearance.friction {
+        check_friction(complaints, &key.key("friction"), friction);
+    }
+}
+
+fn check_normal(complaints: &mut Complaints, key: &KeyPath, normal: &NormalDescription) {
+    complaints.require(key.key("exponent"), &normal.exponent, "", "at least 1", |n| n >= 1.0);
+    check_restitution(complaints, key.key("restitution"), normal);
+    if let StiffnessDescription::Number(stiffness) = &normal.stiffness {
+        complaints.require_positive(key.key("stiffness"), stiffness, "N/mⁿ");
+    }
+    check_material(complaints, key.key("young"), &normal.stiffness, &normal.young, "Pa");
+    if let Some(young) = &normal.young {
+        complaints.require_positive(key.key("young"), young, "Pa");
+    }
+    check_material(complaints, key.key("poisson"), &normal.stiffness, &normal.poisson, "");
+    if let Some(poisson) = &normal.poisson {
+        let range = "greater than -1 and at most 0.5";
+        complaints.require(key.key("poisson"), poisson, "", range, |nu| nu > -1.0 && nu <= 0.5);
+    }
+}
+
+/// A law that dissipates needs a restitution, one that does not takes none.
+fn check_restitution(complaints: &mut Complaints, key: KeyPath, normal: &NormalDescription) {
+    let dissipates = match normal.law {
+        NormalLawName::Hertz => false,
+        NormalLawName::LankaraniNikravesh => true,
+    };
+    let law = normal.law.name();
+    match &normal.restitution {
+        None if dissipates => complaints.add(key, format!("is missing; law {law:?} needs it")),
+        Some(_) if !dissipates => complaints.add(key, format!("law {law:?} takes no restitution")),
+        Some(restitution) => {
+            let range = "greater than 0 and at most 1";
+            complaints.require(key, restitution, "", range, |e| e > 0.0 && e <= 1.0);
+        }
+        None => {}
+    }
+}
+
+/// The Hertz stiffnesses need each material constant, a stiffness given as a number takes none.
+fn check_material(
+    complaints: &mut Complaints,
+    key: KeyPath,
+    stiffness: &StiffnessDescription,
+    constant: &Option<Decimal>,
+    unit: &str,
+) {
+    let by_material = match stiffness {
+        StiffnessDescription::HertzPrinted => Some("hertz-printed"),
+        StiffnessDescription::HertzInternal => Some("hertz-internal"),
+        StiffnessDescription::Number(_) => None,
+    };
+    match (by_material, constant) {
+        (Some(name), None) => {
+            let unit = super::in_brackets(unit);
+            complaints.add(key, format!("is missing{unit}; stiffness {name:?} needs it"));
+        }
+        (None, Some(_)) => complaints.add(key, "is not used where stiffness is a number"),
+        _ => {}
+    }
+}
+
+fn check_friction(complaints: &mut Complaints, key: &KeyPath, friction: &FrictionDescription) {
+    let FrictionDescription::Ambrosio { coefficient, v0, v1 } = friction;
+    let not_negative = "zero or positive";
+    complaints.require(key.key("coefficient"), coefficient, "", not_negative, |c| c >= 0.0);
+    let v0_right = complaints.require(key.key("v0"), v0, "m/s", not_negative, |v| v >= 0.0);
+    let v1_right = complaints.require_positive(key.key("v1"), v1, "m/s");
+    if v0_right && v1_right && v1.to_f64() <= v0.to_f64() {
+        complaints.add(key.key("v1"), format!("must be greater than v0, {v0} (m/s), is {v1}"));
+    }
+}
+
+fn check_drives(complaints: &mut Complaints, description: &Description) {
+    check_names(
+        complaints,
+        &KeyPath::new(["drives"]),
+        description.drives.iter().map(|drive| &drive.name),
+    );
+    for (position, drive) in description.drives.iter().enumerate() {
+        let key = KeyPath::new(["drives", &drive.name]);
+        let joint = &drive.joint;
+        let mut joints = description.joints.iter().map(|known| known.name.as_str());
+        if !joints.clone().any(|known| known == joint) {
+            let near = did_you_mean(joint, joints.by_ref());
+            complaints.add(key.key("joint"), format!("there is no joint {joint:?}{near}"));
+        }
+        let earlier = &description.drives[..position];
+        if let Some(other) = earlier.iter().find(|other| other.joint == *joint) {
+            let other = &other.name;
+            complaints
+                .add(key.key("joint"), format!("drive {other:?} drives joint {joint:?} already"));
+        }
+        check_drive(complaints, &key, drive);
+    }
+}
+
+fn check_drive(complaints: &mut Complaints, key: &KeyPath, drive: &DriveDescription) {
+    let DriveKind::Speed { speed_rpm, angle } = &drive.kind;
+    complaints.require_finite(key.key("speed_rpm"), speed_rpm, "revolutions a minute");
+    complaints.require_finite(key.key("angle"), angle, "rad");
+}
+
+fn check_load(complaints: &mut Complaints, load: &LoadDescription) {
+    let key = KeyPath::new(["loads", &load.name]);
+    let LoadKind::Gravity { acceleration } = &load.kind;
+    check_vector(complaints, key.key("acceleration"), acceleration, "m/s²");
+}
+
+fn check_starts(complaints: &mut Complaints, description: &Description) {
+    let list = KeyPath::new(["start"]);
+    let mut seen = HashSet::new();
+    for start in &description.start {
+        let key = list.key(&start.body);
+        if !seen.insert(&start.body) {
+            complaints.add(key.clone(), "stands there twice");
+        }
+        if !description.bodies.iter().any(|body| body.name == start.body) {
+            let bodies = description.bodies.iter().map(|body| body.name.as_str());
+            let near = did_you_mean(&start.body, bodies);
+            complaints.add(key.clone(), format!("there is no body {:?}{near}", start.body));
+        }
+        check_start(complaints, &key, start);
+    }
+}
+
+fn check_start(complaints: &mut Complaints, key: &KeyPath, start: &StartDescription) {
+    let numbers = [
+        ("x", &start.x, "m"),
+        ("y", &start.y, "m"),
+        ("angle", &start.angle, "rad"),
+        ("velocity_x", &start.velocity_x, "m/s"),
+        ("velocity_y", &start.velocity_y, "m/s"),
+        ("angular_velocity", &start.angular_velocity, "rad/s"),
+    ];
+    for (name, number, unit) in &numbers {
+        if let Some(number) = number {
+            complaints.require_finite(key.key(*name), number, unit);
+        }
+    }
+    if start.fixed && numbers.iter().all(|(_, number, _)| number.is_none()) {
+        complaints
+            .add(key.key("fixed"), "holds nothing: name a coordinate or a velocity beside it");
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn number(literal: &str) -> Decimal {
+        Decimal::new(literal).unwrap()
+    }
+
+    /// A body with a point at its mass centre.
+    fn body(name: &str) -> BodyDescription {
+        let centre = NamedPoint { name: "C".into(), at: [number("0"), number("0")] };
+        BodyDescription {
+            name: name.into(),
+            mass: number("1"),
+            inertia: number("1"),
+            points: vec![centre],
+        }
+    }
+
+    fn told(description: &Description) -> Vec<String> {
+        check(description).iter().map(ToString::to_string).collect()
+    }
+
+    #[test]
+    fn a_body_that_no_joint_reaches_is_sound() {
+        let free = Description { bodies: vec![body("_free1")], ..Description::default() };
+        assert_eq!(told(&free), Vec::<String>::new());
+    }
+
+    #[test]
+    fn whatever_stands_twice_is_told() {
+        let mut twice =
+            Description { bodies: vec![body("rod"), body("rod")], ..Default::default() };
+        let point = twice.bodies[0].points[0].clone();
+        twice.ground = vec![point.clone(), point];
+        let start = StartDescription { body: "rod".into(), ..Default::default() };
+        twice.start = vec![start.clone(), start];
+        assert_eq!(
+            told(&twice),
+            [
+                "ground.points.C: stands there twice",
+                "bodies.rod: stands there twice",
+                "start.rod: stands there twice"
+            ]
+        );
+    }
+
+    #[test]
+    fn names_are_words() {
+        for (name, right) in [
+            ("A0", true),
+            ("_", true),
+            ("a_b", true),
+            ("", false),
+            ("0A", false),
+            ("a-b", false),
+            ("é", false),
+        ] {
+            assert_eq!(is_name(name), right, "{name:?}");
+        }
+    }
+}
