@@ -117,12 +117,14 @@ fn set(table: &mut dyn TableLike, keys: &[String], value: &Value) -> Result<(), 
     }
 }
 
-/// Puts a value in the place of what a key had; a comment behind it stays.
+/// Puts a value in the place of what a key had; the layout and a comment behind it stay.
 fn replace(table: &mut dyn TableLike, key: &str, mut value: Value) {
-    if let Some(Item::Value(old)) = table.get(key) {
+    if let Some(Item::Value(old)) = table.get_mut(key) {
         *value.decor_mut() = old.decor().clone();
+        *old = value;
+    } else {
+        table.insert(key, Item::Value(value));
     }
-    table.insert(key, Item::Value(value));
 }
 
 fn remove_clearances(document: &mut DocumentMut) {

@@ -58,7 +58,7 @@ impl Case {
         Case::from_text(path, &source::read_text(path)?, changes)
     }
 
-    /// Reads and checks the text of a case file, of which only the name is taken from `path`.
+    /// Reads and checks the text of a case file; `path` gives the default name, and errors tell it.
     ///
     /// # Errors
     /// The text is not TOML, or does not describe a mechanism.

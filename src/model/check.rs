@@ -312,3 +312,66 @@ fn check_start(complaints: &mut Complaints, key: &KeyPath, start: &StartDescript
             .add(key.key("fixed"), "holds nothing: name a coordinate or a velocity beside it");
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn number(literal: &str) -> Decimal {
+        Decimal::new(literal).unwrap()
+    }
+
+    /// A body with a point at its mass centre.
+    fn body(name: &str) -> BodyDescription {
+        let centre = NamedPoint { name: "C".into(), at: [number("0"), number("0")] };
+        BodyDescription {
+            name: name.into(),
+            mass: number("1"),
+            inertia: number("1"),
+            points: vec![centre],
+        }
+    }
+
+    fn told(description: &Description) -> Vec<String> {
+        check(description).iter().map(ToString::to_string).collect()
+    }
+
+    #[test]
+    fn a_body_that_no_joint_reaches_is_sound() {
+        let free = Description { bodies: vec![body("_free1")], ..Description::default() };
+        assert_eq!(told(&free), Vec::<String>::new());
+    }
+
+    #[test]
+    fn whatever_stands_twice_is_told() {
+        let mut twice =
+            Description { bodies: vec![body("rod"), body("rod")], ..Default::default() };
+        let point = twice.bodies[0].points[0].clone();
+        twice.ground = vec![point.clone(), point];
+        let start = StartDescription { body: "rod".into(), ..Default::default() };
+        twice.start = vec![start.clone(), start];
+        assert_eq!(
+            told(&twice),
+            [
+                "ground.points.C: stands there twice",
+                "bodies.rod: stands there twice",
+                "start.rod: stands there twice"
+            ]
+        );
+    }
+
+    #[test]
+    fn names_are_words() {
+        for (name, right) in [
+            ("A0", true),
+            ("_", true),
+            ("a_b", true),
+            ("", false),
+            ("0A", false),
+            ("a-b", false),
+            ("é", false),
+        ] {
+            assert_eq!(is_name(name), right, "{name:?}");
+        }
+    }
+}

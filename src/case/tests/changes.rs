@@ -1,0 +1,96 @@
+//! `--set` and `--ideal`.
+
+use super::*;
+
+#[test]
+fn a_set_key_is_read_and_stands_in_the_text_as_run() {
+    let set =
+        ["joints.A.clearance.radial=0.00015", "solver.engine=explicit", "solver.precision=71"];
+    let case = Case::from_text(Path::new("a.toml"), FOUR_BAR_A, &changes(&set, false)).unwrap();
+    let JointKind::Revolute { clearance } = &case.description.joints[1].kind;
+    assert_eq!(clearance.as_ref().unwrap().radial.to_string(), "0.00015");
+    assert_eq!(case.plan.solver.engine, EngineName::Explicit);
+    assert_eq!(case.plan.solver.precision, Precision::Octuple);
+    let radial = format!("radial         = 0.00015{}# m, radial clearance c\n", " ".repeat(34));
+    assert!(case.text.contains(&radial), "the comment stays:\n{}", case.text);
+    assert_eq!(case.text.lines().count(), FOUR_BAR_A.lines().count() + 1);
+    let again = read(&case.text).unwrap();
+    assert_eq!((again.description, again.plan), (case.description, case.plan));
+}
+
+#[test]
+fn tables_that_a_set_key_needs_are_made() {
+    let text = &FOUR_BAR_A[..FOUR_BAR_A.find("[run]").unwrap()];
+    let set = [
+        "run.duration=1e-3",
+        "run.sample_interval=1e-5",
+        "joints.B.clearance={bearing_radius=0.01,radial=0.001,normal={law=\"hertz\",stiffness=1e9}}",
+        "bodies.coupler.points.C=[0, 0.1]",
+        "loads.g.kind=gravity",
+        "loads.g.acceleration=[0, -9.81]",
+    ];
+    let case = Case::from_text(Path::new("a.toml"), text, &changes(&set, false)).unwrap();
+    assert_eq!(case.plan.duration.to_string(), "1e-3");
+    assert_eq!(case.description.bodies[1].points[2].name, "C");
+    assert_eq!(case.description.loads.len(), 1);
+    assert!(matches!(case.description.joints[2].kind, JointKind::Revolute { clearance: Some(_) }));
+}
+
+#[test]
+fn complaints_about_set_keys_name_the_option() {
+    for (set, expected) in [
+        (
+            "joints.A.clearance.radial=-1",
+            "--set joints.A.clearance.radial: must be positive (m), is -1",
+        ),
+        (
+            "joints.A.clearance.radial=small",
+            "--set joints.A.clearance.radial: must be a number (m), is a string",
+        ),
+        ("solver.tolerance=1", "--set solver.tolerance: unknown key"),
+        (
+            "bodies.rod.mass=1",
+            "--set bodies.rod.mass, bodies.rod.inertia: is missing; it must be a number (kg m²)",
+        ),
+        (
+            "drives.crank={}",
+            "--set drives.crank, drives.crank.joint: is missing; it must be a string",
+        ),
+        (
+            "name.first=1",
+            "--set name.first: cannot be set: \"name\" is no table but a value (string)",
+        ),
+    ] {
+        let complaints = complaints_with(&[set]);
+        assert!(complaints[0].starts_with(expected), "{set} gives {complaints:#?}");
+    }
+}
+
+#[test]
+fn what_is_no_override_is_refused() {
+    for (text, expected) in [
+        ("radial", "\"radial\" is not KEY=VALUE"),
+        ("=1", "\"\" is not a dotted key"),
+        ("a..b=1", "\"a..b\" is not a dotted key"),
+        ("run.duration=", "\"\" is neither a TOML value nor a word"),
+        ("run.duration=[1", "\"[1\" is neither"),
+        ("run.duration=1\nb=2", "is neither"),
+    ] {
+        let error = text.parse::<Override>().unwrap_err().to_string();
+        assert!(error.contains(expected), "{text}: {error}");
+    }
+}
+
+#[test]
+fn ideal_removes_every_clearance_and_nothing_else() {
+    let ideal = changes(&[], true);
+    for file in case_files() {
+        let case = Case::read(&file, &ideal).unwrap();
+        assert!(!case.text.contains("clearance]"), "{}", case.text);
+        let mut expected = Case::read(&file, &Changes::default()).unwrap().description;
+        for joint in &mut expected.joints {
+            joint.kind = JointKind::Revolute { clearance: None };
+        }
+        assert_eq!(case.description, expected);
+    }
+}
