@@ -7,4 +7,5 @@ pub mod plane;
 pub mod model;
 pub mod dae;
 pub mod mechanism;
+pub mod engine;
 pub mod run;
