@@ -13,5 +13,6 @@ pub mod clearance;
 pub mod load;
 pub mod model;
 pub mod mechanism;
+pub mod engine;
 pub mod run;
 pub mod case;

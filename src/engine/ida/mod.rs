@@ -1,0 +1,397 @@
+//! The main engine: SUNDIALS IDA, variable-order variable-step BDF for index-1 DAEs.
+//!
+//! ```text
+//! F(t, y, ẏ) = 0,  y = (q, v, λ)
+//! ```
+//!
+//! [`Ida`] is safe to use: what is unsafe is in `ffi.rs`. What its settings are, and why, is
+//! measured in NUMERICS.md; the ones that let a run at tolerances of 1e-12 and 1e-20 finish are the
+//! fifty error-test failures a step may have, λ out of every norm, and the small first step after
+//! each restart.
+//!
+//! Source of the method: A. C. Hindmarsh et al., SUNDIALS: Suite of nonlinear and
+//! differential/algebraic equation solvers, ACM TOMS 31 (2005) 363–396, and IDA's user guide.
+
+mod error;
+mod ffi;
+mod quadrature;
+mod tolerance;
+mod vector_operations;
+
+#[cfg(test)]
+mod tests;
+
+pub use error::Error;
+pub use tolerance::{AbsoluteTolerance, Norm};
+
+use crate::dae::{Advance, Count, Dae, Engine, Fault, Snapshot, State};
+use ffi::{Counters, Return, Solver};
+use quadrature::Quadrature;
+use tolerance::Weights;
+
+/// IDA's own measure of "at the stop time", in roundings of the time.
+const ROUNDINGS_AT_END: f64 = 100.0;
+
+/// This many steps in a row must lead further than this many roundings of the time each.
+const STALLED_STEPS: u32 = 1000;
+const STALLED_ROUNDINGS: f64 = 16.0;
+
+/// The first step is at least this many roundings of the time.
+const FIRST_STEP_ROUNDINGS: f64 = 256.0;
+
+/// How IDA is to solve.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Options {
+    /// Error that a step may make, relative to each component.
+    pub relative_tolerance: f64,
+    /// Error below which a component does not count.
+    pub absolute_tolerance: AbsoluteTolerance,
+    /// First step (s) after each restart; shorter where the end or `max_step` is nearer.
+    pub initial_step: f64,
+    /// Longest step (s); may be infinite.
+    pub max_step: f64,
+    /// Norm of the errors.
+    pub norm: Norm,
+    /// Leaves IDA's inner loops to the vector operations of SUNDIALS: slower by a factor of two,
+    /// with the same results but for rounding. For measurements.
+    pub stock_vector_operations: bool,
+}
+
+impl Default for Options {
+    /// The tolerances of the literature: 1e-12 and 1e-20 with a first step of 1e-10 s.
+    fn default() -> Self {
+        Options {
+            relative_tolerance: 1e-12,
+            absolute_tolerance: AbsoluteTolerance::Scalar(1e-20),
+            initial_step: 1e-10,
+            max_step: f64::INFINITY,
+            norm: Norm::Ode15s,
+            stock_vector_operations: false,
+        }
+    }
+}
+
+/// Version of the SUNDIALS library that the program runs with, as "6.4.1".
+pub fn sundials_version() -> String {
+    ffi::version().map(|number| number.to_string()).join(".")
+}
+
+/// What the engine can do next.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Phase {
+    /// Nothing before a restart.
+    NotStarted,
+    /// IDA stands where the engine does; its last step can be interpolated.
+    Running,
+    /// IDA stands beyond the event where the engine does; its last step can be interpolated.
+    AtEvent,
+    /// The engine went on without IDA, to an end within rounding.
+    Crept,
+}
+
+/// IDA, solving a system.
+///
+/// After [`Engine::restart`] and after each [`Engine::step`] the system stands evaluated at
+/// [`Engine::now`], so that its accelerations, multipliers and powers can be read. A step that
+/// follows an event without a restart begins with one, from the state at the event and in the
+/// system's present modes.
+pub struct Ida<Y: Dae> {
+    solver: Solver<Y>,
+    options: Options,
+    phase: Phase,
+    now: Snapshot<f64>,
+    /// Where the last step began.
+    began: Snapshot<f64>,
+    quadrature: Quadrature,
+    fired: Vec<bool>,
+    /// Stop time (s) that IDA knows.
+    stop_time: Option<f64>,
+    progress: Progress,
+    restarts: u64,
+    /// What IDA counted before the last restart.
+    earlier: Counters,
+}
+
+impl<Y: Dae> Ida<Y> {
+    /// An engine for a system. It needs a restart before its first step.
+    ///
+    /// # Errors
+    /// [`Error::Option`], [`Error::NothingToSolve`], [`Error::Version`], [`Error::Memory`].
+    pub fn new(system: Y, options: Options) -> Result<Self, Error> {
+        check_version()?;
+        check_step("initial_step", options.initial_step, options.initial_step.is_finite())?;
+        check_step("max_step", options.max_step, true)?;
+        if system.coordinates() == 0 {
+            return Err(Error::NothingToSolve);
+        }
+        let weights = Weights::new(
+            options.relative_tolerance,
+            options.absolute_tolerance,
+            options.norm,
+            system.scales(),
+        )?;
+        let now = Snapshot::new(system.coordinates(), system.integrals());
+        let quadrature = Quadrature::new(system.integrals());
+        let fired = vec![false; system.watches().len()];
+        let stock = options.stock_vector_operations;
+        Ok(Ida {
+            solver: Solver::new(system, weights, options.max_step, stock)?,
+            options,
+            phase: Phase::NotStarted,
+            began: now.clone(),
+            now,
+            quadrature,
+            fired,
+            stop_time: None,
+            progress: Progress::default(),
+            restarts: 0,
+            earlier: Counters::default(),
+        })
+    }
+
+    /// The options that it was made with.
+    pub fn options(&self) -> &Options {
+        &self.options
+    }
+
+    /// Begins anew at `self.now`.
+    fn begin(&mut self) -> Result<(), Error> {
+        self.phase = Phase::NotStarted;
+        self.began.clone_from(&self.now);
+        self.fired.fill(false);
+        self.evaluate()?;
+        let n = self.now.q.len();
+        let (system, now) = (self.solver.system_ref(), &self.now);
+        self.quadrature.restart(now.time, system.powers(), &now.integrals);
+        let (accelerations, lambda) = (system.accelerations().to_vec(), system.lambda().to_vec());
+        let (y, yp) = self.solver.unknowns_mut();
+        y[..n].copy_from_slice(&now.q);
+        y[n..2 * n].copy_from_slice(&now.v);
+        y[2 * n..].copy_from_slice(&lambda);
+        yp[..n].copy_from_slice(&now.v);
+        yp[n..2 * n].copy_from_slice(&accelerations);
+        yp[2 * n..].fill(0.0);
+        self.earlier += self.solver.counters();
+        let shortest = FIRST_STEP_ROUNDINGS * f64::EPSILON * now.time.abs();
+        self.solver.reinitialize(now.time, self.options.initial_step.max(shortest))?;
+        self.stop_time = None;
+        self.restarts += 1;
+        self.phase = Phase::Running;
+        Ok(())
+    }
+
+    /// Evaluates the system at `self.now`.
+    fn evaluate(&mut self) -> Result<(), Error> {
+        let Snapshot { time, q, v, .. } = &self.now;
+        let state = State { time: *time, q, v, turns: None };
+        let evaluated = self.solver.system().evaluate(state);
+        evaluated.map_err(|source| Error::System { time: *time, source })
+    }
+
+    /// One step of IDA to `self.now`, from a state that `self.began` keeps.
+    fn step_ida(&mut self, end: f64) -> Result<Advance, Error> {
+        if self.stop_time != Some(end) {
+            self.solver.set_stop_time(end)?;
+            self.stop_time = Some(end);
+        }
+        let (time, ended) = self.solver.step(end)?;
+        if ended == Return::AtStopTime {
+            self.stop_time = None;
+        }
+        std::mem::swap(&mut self.began, &mut self.now);
+        let n = self.now.q.len();
+        let y = self.solver.unknowns();
+        self.now.time = time;
+        self.now.q.copy_from_slice(&y[..n]);
+        self.now.v.copy_from_slice(&y[n..2 * n]);
+        self.evaluate()?;
+        self.quadrature.advance(time, self.solver.system_ref().powers());
+        self.now.integrals.copy_from_slice(self.quadrature.totals());
+        let setback = self.solver.take_setback();
+        self.progress.made(time, setback)?;
+        if ended == Return::AtRoot {
+            self.solver.roots(&mut self.fired)?;
+            self.phase = Phase::AtEvent;
+            return Ok(Advance::Event);
+        }
+        Ok(Advance::Stepped)
+    }
+
+    /// Goes to an end that is within rounding, too near for IDA, along the tangent.
+    fn creep(&mut self, end: f64) -> Result<Advance, Error> {
+        self.began.clone_from(&self.now);
+        self.phase = Phase::Crept;
+        let length = end - self.now.time;
+        let (system, now) = (self.solver.system_ref(), &mut self.now);
+        let tangent = |x: &mut [f64], rates: &[f64]| {
+            x.iter_mut().zip(rates).for_each(|(x, rate)| *x += length * rate);
+        };
+        tangent(&mut now.q, &now.v);
+        tangent(&mut now.v, system.accelerations());
+        tangent(&mut now.integrals, system.powers());
+        now.time = end;
+        self.evaluate()?;
+        Ok(Advance::Stepped)
+    }
+}
+
+impl<Y: Dae> Engine<f64> for Ida<Y> {
+    type System = Y;
+    type Error = Error;
+
+    fn system(&mut self) -> &mut Y {
+        self.solver.system()
+    }
+
+    /// # Errors
+    /// [`Error::System`] if the system cannot be evaluated at `now`.
+    fn restart(&mut self, now: &Snapshot<f64>) -> Result<(), Error> {
+        assert_eq!(now.q.len(), self.now.q.len(), "a snapshot of another system");
+        assert_eq!(now.integrals.len(), self.now.integrals.len(), "a snapshot of another system");
+        self.now.clone_from(now);
+        self.begin()
+    }
+
+    /// # Errors
+    /// [`Error::Stopped`] if IDA gives up, [`Error::System`] if the system does,
+    /// [`Error::NoProgress`] if time stands still, [`Error::NotStarted`], [`Error::Backwards`].
+    ///
+    /// # Panics
+    /// With the system's own panic, if it panics.
+    fn step(&mut self, end: f64) -> Result<Advance, Error> {
+        let now = self.now.time;
+        if self.phase == Phase::NotStarted {
+            return Err(Error::NotStarted);
+        }
+        if end < now || end.is_nan() {
+            return Err(Error::Backwards { now, end });
+        }
+        self.fired.fill(false);
+        if end - now <= ROUNDINGS_AT_END * f64::EPSILON * (end.abs() + now.abs()) {
+            return self.creep(end);
+        }
+        if self.phase != Phase::Running {
+            self.begin()?;
+        }
+        self.step_ida(end).inspect_err(|_| self.phase = Phase::NotStarted)
+    }
+
+    fn now(&self) -> &Snapshot<f64> {
+        &self.now
+    }
+
+    fn began(&self) -> f64 {
+        self.began.time
+    }
+
+    /// # Errors
+    /// [`Error::Outside`] if the time is not within the last step.
+    fn within(&mut self, time: f64, at: &mut Snapshot<f64>) -> Result<(), Error> {
+        let (began, now) = (self.began.time, self.now.time);
+        if time == now {
+            at.clone_from(&self.now);
+        } else if time == began {
+            at.clone_from(&self.began);
+        } else if !(began < time && time < now) {
+            return Err(Error::Outside { time, began, now });
+        } else if self.phase == Phase::Crept {
+            between(&self.began, &self.now, time, at);
+        } else {
+            let n = self.now.q.len();
+            let y = self.solver.interpolate(time)?;
+            at.time = time;
+            at.q.copy_from_slice(&y[..n]);
+            at.v.copy_from_slice(&y[n..2 * n]);
+            self.quadrature.within(time, &mut at.integrals);
+        }
+        Ok(())
+    }
+
+    fn fired(&self) -> &[bool] {
+        &self.fired
+    }
+
+    fn counts(&self) -> Vec<Count> {
+        let mut ida = self.earlier;
+        ida += self.solver.counters();
+        let calls = self.solver.calls();
+        let count = |name, value| Count { name, value };
+        vec![
+            count("steps", ida.steps),
+            count("restarts", self.restarts),
+            count("residual_evaluations", calls.residuals),
+            count("jacobian_evaluations", calls.jacobians),
+            count("root_evaluations", calls.roots),
+            count("nonlinear_iterations", ida.nonlinear_iterations),
+            count("nonlinear_convergence_failures", ida.nonlinear_convergence_failures),
+            count("error_test_failures", ida.error_test_failures),
+        ]
+    }
+}
+
+/// The state at a time between two states that are within rounding.
+fn between(from: &Snapshot<f64>, to: &Snapshot<f64>, time: f64, at: &mut Snapshot<f64>) {
+    let part = (time - from.time) / (to.time - from.time);
+    let mix = |at: &mut [f64], from: &[f64], to: &[f64]| {
+        for ((at, from), to) in at.iter_mut().zip(from).zip(to) {
+            *at = from + part * (to - from);
+        }
+    };
+    at.time = time;
+    mix(&mut at.q, &from.q, &to.q);
+    mix(&mut at.v, &from.v, &to.v);
+    mix(&mut at.integrals, &from.integrals, &to.integrals);
+}
+
+/// Whether the library is of the version that the program was built for.
+fn check_version() -> Result<(), Error> {
+    match ffi::version() {
+        [6, 4, _] => Ok(()),
+        _ => Err(Error::Version { found: sundials_version() }),
+    }
+}
+
+fn check_step(name: &'static str, value: f64, sound: bool) -> Result<(), Error> {
+    if sound && value > 0.0 {
+        return Ok(());
+    }
+    Err(Error::Option { name, value, must: "be a positive time (s)" })
+}
+
+/// Watches that time goes on. It lives through restarts, for a storm of events stands still too.
+#[derive(Debug, Default)]
+struct Progress {
+    /// Steps since `mark`.
+    steps: u32,
+    /// Time (s) at which counting began.
+    mark: f64,
+    /// The last complaint of the system since then.
+    setback: Option<Fault>,
+}
+
+impl Progress {
+    /// A step led to a time (s), perhaps after a complaint of the system.
+    fn made(&mut self, time: f64, setback: Option<Fault>) -> Result<(), Error> {
+        let standstill = f64::from(STALLED_STEPS) * STALLED_ROUNDINGS * f64::EPSILON * time.abs();
+        if (time - self.mark).abs() > standstill {
+            *self = Progress { steps: 0, mark: time, setback: None };
+            return Ok(());
+        }
+        self.steps += 1;
+        self.setback = setback.or(self.setback.take());
+        if self.steps < STALLED_STEPS {
+            return Ok(());
+        }
+        let Progress { steps, mark: since, setback: source } = std::mem::take(self);
+        Err(Error::NoProgress { steps, since, now: time, source })
+    }
+}
+
+impl std::ops::AddAssign for Counters {
+    fn add_assign(&mut self, other: Counters) {
+        self.steps += other.steps;
+        self.nonlinear_iterations += other.nonlinear_iterations;
+        self.nonlinear_convergence_failures += other.nonlinear_convergence_failures;
+        self.error_test_failures += other.error_test_failures;
+    }
+}

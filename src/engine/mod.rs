@@ -1,0 +1,6 @@
+//! Engines: what carries a system from one event to the next.
+
+pub mod ida;
+
+#[cfg(test)]
+pub(crate) mod testing;

@@ -1,0 +1,207 @@
+//! Small systems with known solutions, shared by the tests of the engines.
+
+use crate::dae::{Dae, Fault, State, System, Watch};
+use nalgebra::DMatrixViewMut;
+
+/// One constraint Φ(q) = 0 at a state.
+pub(crate) struct Constraint {
+    /// Φ.
+    pub(crate) value: f64,
+    /// Φ_q.
+    pub(crate) gradient: Vec<f64>,
+    /// γ in Φ_q v̇ = γ.
+    pub(crate) bias: f64,
+}
+
+/// The formulas of a system of unit masses with at most one constraint.
+pub(crate) trait Formulas {
+    /// Typical sizes of coordinates and of velocities.
+    fn scales(&self) -> (Vec<f64>, Vec<f64>);
+
+    /// Forces Q, one a coordinate (N).
+    fn forces(&mut self, t: f64, q: &[f64], v: &[f64], forces: &mut [f64]) -> Result<(), Fault>;
+
+    /// The constraint, if there is one.
+    fn constraint(&self, _q: &[f64], _v: &[f64]) -> Option<Constraint> {
+        None
+    }
+
+    /// Number of integrals.
+    fn integrals(&self) -> usize {
+        0
+    }
+
+    /// Powers, one an integral (W).
+    fn powers(&self, _t: f64, _q: &[f64], _v: &[f64], _powers: &mut [f64]) {}
+
+    /// The event functions' watches in the present mode.
+    fn watches(&self) -> Vec<Watch> {
+        Vec::new()
+    }
+
+    /// The event functions.
+    fn events(&mut self, _t: f64, _q: &[f64], _v: &[f64], _g: &mut [f64]) -> Result<(), Fault> {
+        Ok(())
+    }
+}
+
+/// A system made of formulas.
+pub(crate) struct Sample<F> {
+    pub(crate) formulas: F,
+    scales: (Vec<f64>, Vec<f64>),
+    multipliers: usize,
+    accelerations: Vec<f64>,
+    lambda: Vec<f64>,
+    powers: Vec<f64>,
+    watches: Vec<Watch>,
+}
+
+impl<F: Formulas> Sample<F> {
+    pub(crate) fn new(formulas: F) -> Self {
+        let scales = formulas.scales();
+        let n = scales.0.len();
+        let multipliers = usize::from(formulas.constraint(&scales.0, &scales.1).is_some());
+        Sample {
+            multipliers,
+            accelerations: vec![0.0; n],
+            lambda: vec![0.0; multipliers],
+            powers: vec![0.0; formulas.integrals()],
+            watches: formulas.watches(),
+            scales,
+            formulas,
+        }
+    }
+
+    /// Changes the mode that the formulas are in.
+    pub(crate) fn switch(&mut self, change: impl FnOnce(&mut F)) {
+        change(&mut self.formulas);
+        self.watches = self.formulas.watches();
+    }
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+impl<F: Formulas> System<f64> for Sample<F> {
+    fn coordinates(&self) -> usize {
+        self.accelerations.len()
+    }
+
+    fn multipliers(&self) -> usize {
+        self.multipliers
+    }
+
+    fn integrals(&self) -> usize {
+        self.powers.len()
+    }
+
+    fn scales(&self) -> (&[f64], &[f64]) {
+        (&self.scales.0, &self.scales.1)
+    }
+
+    fn evaluate(&mut self, state: State<'_, f64>) -> Result<(), Fault> {
+        let State { time, q, v, .. } = state;
+        self.formulas.forces(time, q, v, &mut self.accelerations)?;
+        if let Some(Constraint { gradient, bias, .. }) = self.formulas.constraint(q, v) {
+            let lambda = (dot(&gradient, &self.accelerations) - bias) / dot(&gradient, &gradient);
+            self.accelerations.iter_mut().zip(&gradient).for_each(|(a, g)| *a -= lambda * g);
+            self.lambda[0] = lambda;
+        }
+        self.formulas.powers(time, q, v, &mut self.powers);
+        Ok(())
+    }
+
+    fn accelerations(&self) -> &[f64] {
+        &self.accelerations
+    }
+
+    fn lambda(&self) -> &[f64] {
+        &self.lambda
+    }
+
+    fn powers(&self) -> &[f64] {
+        &self.powers
+    }
+
+    fn watches(&self) -> &[Watch] {
+        &self.watches
+    }
+
+    fn event_values(&mut self, state: State<'_, f64>, values: &mut [f64]) -> Result<(), Fault> {
+        self.formulas.events(state.time, state.q, state.v, values)
+    }
+
+    fn event_rate(&self, _k: usize) -> f64 {
+        unreachable!("an implicit engine asks for no event rates")
+    }
+
+    fn project(&mut self, _time: f64, q: &mut [f64], v: &mut [f64]) -> Result<f64, Fault> {
+        let mut distance = 0.0_f64;
+        for _ in 0..4 {
+            let Some(Constraint { value, gradient, .. }) = self.formulas.constraint(q, v) else {
+                break;
+            };
+            let square = dot(&gradient, &gradient);
+            distance = distance.max((value / square.sqrt()).abs());
+            q.iter_mut().zip(&gradient).for_each(|(q, g)| *q -= value * g / square);
+            let rate = dot(&gradient, v);
+            v.iter_mut().zip(&gradient).for_each(|(v, g)| *v -= rate * g / square);
+        }
+        Ok(distance)
+    }
+
+    fn turns(&self) -> usize {
+        0
+    }
+
+    fn turn_angles(&self, _time: f64, _q: &[f64], _angles: &mut [f64]) {}
+
+    fn turn_rates(&self, _time: f64, _v: &[f64], _rates: &mut [f64]) {}
+}
+
+impl<F: Formulas> Dae for Sample<F> {
+    fn residual(&mut self, t: f64, y: &[f64], yp: &[f64], r: &mut [f64]) -> Result<(), Fault> {
+        let n = self.coordinates();
+        let (q, v) = (&y[..n], &y[n..2 * n]);
+        self.formulas.forces(t, q, v, &mut r[n..2 * n])?;
+        for i in 0..n {
+            r[i] = yp[i] - v[i];
+            r[n + i] = yp[n + i] - r[n + i];
+        }
+        if let Some(Constraint { gradient, bias, .. }) = self.formulas.constraint(q, v) {
+            r[n..2 * n].iter_mut().zip(&gradient).for_each(|(r, g)| *r += y[2 * n] * g);
+            r[2 * n] = dot(&gradient, &yp[n..2 * n]) - bias;
+        }
+        Ok(())
+    }
+
+    /// By central differences: enough for Newton's method, and not one formula more to get wrong.
+    fn jacobian(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        yp: &[f64],
+        cj: f64,
+        jacobian: &mut DMatrixViewMut<'_, f64>,
+    ) -> Result<(), Fault> {
+        let (mut y, mut yp) = (y.to_vec(), yp.to_vec());
+        let mut sides = [vec![0.0; y.len()], vec![0.0; y.len()]];
+        let size = |j: usize| *self.scales.0.iter().chain(&self.scales.1).nth(j).unwrap_or(&1.0);
+        let sizes: Vec<f64> = (0..y.len()).map(size).collect();
+        for (j, size) in sizes.iter().enumerate() {
+            let step = 1e-6 * size;
+            let (kept, kept_rate) = (y[j], yp[j]);
+            for (side, shift) in sides.iter_mut().zip([step, -step]) {
+                y[j] = kept + shift;
+                yp[j] = kept_rate + cj * shift;
+                self.residual(t, &y, &yp, side)?;
+            }
+            (y[j], yp[j]) = (kept, kept_rate);
+            for i in 0..y.len() {
+                jacobian[(i, j)] = (sides[0][i] - sides[1][i]) / (2.0 * step);
+            }
+        }
+        Ok(())
+    }
+}
