@@ -8,3 +8,4 @@ pub mod model;
 pub mod dae;
 pub mod mechanism;
 pub mod run;
+pub mod record;
