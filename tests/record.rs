@@ -41,6 +41,8 @@ fn assert_holds(file: &ResultFile, run: &Recorded) {
     assert_eq!(expected.len(), DATASETS.len());
     for (expected, dataset) in expected.iter().zip(&DATASETS) {
         assert_eq!((dataset.name, dataset.unit), (expected.name, expected.unit));
+        let dimensions = [dataset.rows()].into_iter().chain(dataset.items()).map(Dimension::name);
+        assert_eq!(dimensions.collect::<Vec<_>>(), expected.dimensions, "{}", expected.name);
         let table = file.table(expected.name).unwrap();
         assert_eq!(table.rows, expected.shape[0], "{}", expected.name);
         assert_eq!(table.width, expected.shape.get(1).copied().unwrap_or(1), "{}", expected.name);

@@ -12,12 +12,14 @@ use std::ffi::{CString, c_char, c_int, c_uint, c_void};
 /// HDF5's `hid_t`, since 1.10.
 type Identifier = i64;
 
+// SAFETY: the signatures are those of H5DSpublic.h, HDF5 1.10.
 #[link(name = "hdf5_hl")]
 unsafe extern "C" {
     fn H5DSset_scale(scale: Identifier, name: *const c_char) -> c_int;
     fn H5DSattach_scale(dataset: Identifier, scale: Identifier, dimension: c_uint) -> c_int;
 }
 
+// SAFETY: the signatures are those of H5Apublic.h, HDF5 1.10.
 #[link(name = "hdf5")]
 unsafe extern "C" {
     fn H5Awrite(attribute: Identifier, memory_type: Identifier, buffer: *const c_void) -> c_int;
@@ -74,4 +76,50 @@ pub(super) fn read_text(attribute: &Attribute) -> Result<Option<String>> {
     let end = bytes.iter().rposition(|&byte| byte != 0).map_or(0, |last| last + 1);
     bytes.truncate(end);
     Ok(Some(String::from_utf8_lossy(&bytes).into_owned()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use hdf5::File;
+
+    fn with_file(test: impl FnOnce(&File)) {
+        let folder = tempfile::tempdir().unwrap();
+        let mut options = File::with_options();
+        options.fapl().libver_v18();
+        test(&options.create(folder.path().join("a.h5")).unwrap());
+    }
+
+    #[test]
+    fn text_of_any_length_comes_back() {
+        with_file(|file| {
+            for (name, text) in [("empty", ""), ("short", "δ ≤ c"), ("long", &"δ".repeat(100_000))]
+            {
+                write_text(file, name, text).unwrap();
+                let read = read_text(&file.attr(name).unwrap()).unwrap();
+                assert_eq!(read.as_deref(), Some(text), "{name}");
+            }
+        });
+    }
+
+    #[test]
+    fn what_is_no_text_of_fixed_length_is_not_read_as_text() {
+        with_file(|file| {
+            file.new_attr::<i64>().create("number").unwrap().write_scalar(&1_i64).unwrap();
+            assert_eq!(read_text(&file.attr("number").unwrap()).unwrap(), None);
+            file.new_attr::<hdf5::types::VarLenUnicode>().create("pointer").unwrap();
+            assert_eq!(read_text(&file.attr("pointer").unwrap()).unwrap(), None);
+        });
+    }
+
+    #[test]
+    fn a_dimension_that_a_dataset_lacks_gets_no_scale() {
+        with_file(|file| {
+            let scale = file.new_dataset::<i32>().shape(3).create("scale").unwrap();
+            let dataset = file.new_dataset::<f64>().shape(3).create("dataset").unwrap();
+            set_scale(&scale, "scale").unwrap();
+            attach_scale(&dataset, &scale, 0).unwrap();
+            assert!(attach_scale(&dataset, &scale, 1).is_err());
+        });
+    }
 }
