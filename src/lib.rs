@@ -15,4 +15,5 @@ pub mod model;
 pub mod mechanism;
 pub mod engine;
 pub mod run;
+pub mod record;
 pub mod case;

@@ -1,0 +1,24 @@
+//! The result file: what is in it, how it is written and read.
+//!
+//! One table, [`DATASETS`], says what a file holds; the writer and the reader both go by it.
+//! Everything lies flat in the root, in numbers of fixed size and text in attributes, so that
+//! h5py, xarray, `ncdump`, Octave and MATLAB open it without a line of ours.
+
+mod attribute;
+mod dimension_scale;
+mod error;
+mod header;
+mod overview;
+mod publish;
+mod reader;
+mod schema;
+mod store;
+mod writer;
+
+pub use attribute::Attribute;
+pub use error::{Error, LibraryError};
+pub use header::{Ending, Header, Outcome, utc};
+pub use overview::Overview;
+pub use reader::{ResultFile, Table};
+pub use schema::{DATASETS, Dataset, Dimension, SCHEMA_VERSION, Source, Values, column_name};
+pub use writer::Writer;

@@ -1,0 +1,69 @@
+//! What a result file holds and how it was made, in words.
+
+use super::{Attribute, Dimension, Error, ResultFile};
+use std::fmt;
+use std::path::PathBuf;
+
+/// What a result file holds and how it was made; its `Display` is for people to read.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Overview {
+    /// The file.
+    pub path: PathBuf,
+    /// Name of the case.
+    pub case_name: String,
+    /// Title of the case.
+    pub title: String,
+    /// `complete`, `failed` or `running`.
+    pub status: String,
+    /// Times of the first and the last sample (s); `None` without samples.
+    pub span: Option<[f64; 2]>,
+    /// Length of each dimension, with the names of its items where they have names.
+    pub dimensions: Vec<(Dimension, usize, Vec<String>)>,
+    /// All other attributes but the case file's text, in the order of the file.
+    pub attributes: Vec<(String, Attribute)>,
+}
+
+impl Overview {
+    /// Reads the overview of a file.
+    pub fn of(file: &ResultFile) -> Result<Self, Error> {
+        let text = |name| file.text(name).unwrap_or_default().to_owned();
+        let times = file.times()?;
+        let told = ["Conventions", "title", "case_name", "case_toml", "run_status"];
+        let rest = file.attributes().iter().filter(|(name, _)| !told.contains(&name.as_str()));
+        let dimensions = Dimension::ALL
+            .into_iter()
+            .map(|dimension| (dimension, file.length(dimension), file.names(dimension).to_vec()));
+        Ok(Overview {
+            path: file.path().to_owned(),
+            case_name: text("case_name"),
+            title: text("title"),
+            status: text("run_status"),
+            span: times.first().zip(times.last()).map(|(first, last)| [*first, *last]),
+            dimensions: dimensions.collect(),
+            attributes: rest.cloned().collect(),
+        })
+    }
+}
+
+impl fmt::Display for Overview {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "{}", self.path.display())?;
+        writeln!(f, "  case       {}: {}", self.case_name, self.title)?;
+        writeln!(f, "  run        {}", self.status)?;
+        for (dimension, length, names) in &self.dimensions {
+            write!(f, "  {:<9}  {length}", dimension.name())?;
+            match (dimension, self.span) {
+                (Dimension::Time, Some([first, last])) => {
+                    writeln!(f, " samples, {first} s to {last} s")?;
+                }
+                _ if names.is_empty() => writeln!(f)?,
+                _ => writeln!(f, ": {}", names.join(", "))?,
+            }
+        }
+        writeln!(f, "  made with")?;
+        for (name, attribute) in &self.attributes {
+            writeln!(f, "    {name} = {attribute}")?;
+        }
+        Ok(())
+    }
+}

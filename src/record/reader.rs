@@ -1,0 +1,406 @@
+//! Reading result files.
+
+use super::schema::{DATASETS, Dataset, Dimension, SCHEMA_VERSION, column_name};
+use super::{Attribute, Error, LibraryError};
+use crate::model::did_you_mean;
+use crate::run::{Contact, Event, EventKind, Peak};
+use hdf5::{File, IndexType, IterationOrder, MinorErrorCode};
+use std::io::{Error as SystemError, ErrorKind};
+use std::path::{Path, PathBuf};
+
+/// A result file, open for reading. Its samples stay on disk until they are asked for.
+#[derive(Debug)]
+pub struct ResultFile {
+    file: File,
+    path: PathBuf,
+    lengths: [usize; Dimension::ALL.len()],
+    names: [Vec<String>; Dimension::ALL.len()],
+    attributes: Vec<(String, Attribute)>,
+}
+
+/// A whole dataset.
+#[derive(Debug, Clone)]
+pub struct Table {
+    /// What it holds.
+    pub dataset: &'static Dataset,
+    /// Number of rows.
+    pub rows: usize,
+    /// Number of values in a row.
+    pub width: usize,
+    /// Values, row by row, in the dataset's unit.
+    pub values: Vec<f64>,
+}
+
+impl Table {
+    /// The values of one item in all rows.
+    pub fn column(&self, item: usize) -> Vec<f64> {
+        self.values.iter().skip(item).step_by(self.width.max(1)).copied().collect()
+    }
+}
+
+impl ResultFile {
+    /// Opens a result file.
+    ///
+    /// # Errors
+    /// [`Error::System`], [`Error::NotPlain`], [`Error::NotHdf5`], [`Error::Truncated`],
+    /// [`Error::NotAResult`], [`Error::Newer`] or [`Error::Damaged`].
+    pub fn open(path: &Path) -> Result<Self, Error> {
+        let file = open_file(path)?;
+        let mut result = ResultFile {
+            file,
+            path: path.to_owned(),
+            lengths: [0; Dimension::ALL.len()],
+            names: Default::default(),
+            attributes: Vec::new(),
+        };
+        result.attributes = result.read_attributes()?;
+        result.check_schema()?;
+        for dimension in Dimension::ALL {
+            result.lengths[dimension as usize] = result.read_length(dimension)?;
+            result.names[dimension as usize] = result.read_names(dimension)?;
+        }
+        result.check_shapes()?;
+        Ok(result)
+    }
+
+    /// The file.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Length of a dimension: the number of samples, bodies, events and so on.
+    pub fn length(&self, dimension: Dimension) -> usize {
+        self.lengths[dimension as usize]
+    }
+
+    /// Names of the items of a dimension; empty where they have none.
+    pub fn names(&self, dimension: Dimension) -> &[String] {
+        &self.names[dimension as usize]
+    }
+
+    /// Names of all bodies.
+    pub fn bodies(&self) -> &[String] {
+        self.names(Dimension::Body)
+    }
+
+    /// Names of all joints.
+    pub fn joints(&self) -> &[String] {
+        self.names(Dimension::Joint)
+    }
+
+    /// Names of the joints with clearance.
+    pub fn clearances(&self) -> &[String] {
+        self.names(Dimension::Clearance)
+    }
+
+    /// Names of the drives.
+    pub fn drives(&self) -> &[String] {
+        self.names(Dimension::Drive)
+    }
+
+    /// All attributes of the root, in the order in which they were written.
+    pub fn attributes(&self) -> &[(String, Attribute)] {
+        &self.attributes
+    }
+
+    /// The attribute of this name.
+    pub fn attribute(&self, name: &str) -> Option<&Attribute> {
+        self.attributes.iter().find(|(known, _)| known == name).map(|(_, value)| value)
+    }
+
+    /// The text of an attribute; `None` where there is none or it is a number.
+    pub fn text(&self, name: &str) -> Option<&str> {
+        match self.attribute(name) {
+            Some(Attribute::Text(text)) => Some(text),
+            _ => None,
+        }
+    }
+
+    /// The number of an attribute, whole or not; `None` where there is none or it is text.
+    pub fn number(&self, name: &str) -> Option<f64> {
+        match self.attribute(name) {
+            Some(Attribute::Number(value)) => Some(*value),
+            Some(Attribute::Integer(value)) => Some(*value as f64),
+            _ => None,
+        }
+    }
+
+    /// Whether the run came to its end.
+    pub fn is_complete(&self) -> bool {
+        self.text("run_status") == Some("complete")
+    }
+
+    /// Names of all columns over time, `time` first, in the order of the file.
+    pub fn columns(&self) -> Vec<String> {
+        let over_time = DATASETS.iter().filter(|dataset| dataset.rows() == Dimension::Time);
+        over_time.flat_map(|dataset| self.columns_of(dataset)).collect()
+    }
+
+    fn columns_of(&self, dataset: &Dataset) -> Vec<String> {
+        match dataset.items() {
+            None => vec![column_name(dataset.name, None)],
+            Some(items) => {
+                let names = self.names(items).iter();
+                names.map(|item| column_name(dataset.name, Some(item))).collect()
+            }
+        }
+    }
+
+    /// Sample times (s).
+    pub fn times(&self) -> Result<Vec<f64>, Error> {
+        self.column("time")
+    }
+
+    /// One column by its name, `angle.coupler` or `energy_kinetic`, in the dataset's unit.
+    ///
+    /// # Errors
+    /// [`Error::Missing`] if there is no such column, or what reading it meets.
+    pub fn column(&self, name: &str) -> Result<Vec<f64>, Error> {
+        let (dataset, item) = match name.split_once('.') {
+            Some((dataset, item)) => (dataset, Some(item)),
+            None => (name, None),
+        };
+        let found = Dataset::find(dataset)
+            .and_then(|dataset| Some((dataset, self.item_of(dataset, item)?)));
+        match found {
+            Some((dataset, item)) => Ok(self.table(dataset.name)?.column(item)),
+            None => Err(self.no_column(name)),
+        }
+    }
+
+    /// Index of a column in its dataset.
+    fn item_of(&self, dataset: &Dataset, item: Option<&str>) -> Option<usize> {
+        match (dataset.items(), item) {
+            (None, None) => Some(0),
+            (Some(items), Some(item)) => self.names(items).iter().position(|name| name == item),
+            _ => None,
+        }
+    }
+
+    fn no_column(&self, name: &str) -> Error {
+        let columns: Vec<String> =
+            DATASETS.iter().flat_map(|dataset| self.columns_of(dataset)).collect();
+        Error::Missing {
+            path: self.path.clone(),
+            what: format!("column \"{name}\""),
+            hint: did_you_mean(name, columns.iter().map(String::as_str)),
+        }
+    }
+
+    /// A whole dataset by its name.
+    ///
+    /// # Errors
+    /// [`Error::Missing`] if there is no such dataset, or what reading it meets.
+    pub fn table(&self, name: &str) -> Result<Table, Error> {
+        let dataset = Dataset::find(name).filter(|_| self.file.link_exists(name));
+        let Some(dataset) = dataset else {
+            return Err(Error::Missing {
+                path: self.path.clone(),
+                what: format!("dataset \"{name}\""),
+                hint: did_you_mean(name, DATASETS.iter().map(|dataset| dataset.name)),
+            });
+        };
+        let values = self
+            .file
+            .dataset(name)
+            .and_then(|handle| handle.read_raw())
+            .map_err(|error| self.failed(&format!("read {name} of"), error))?;
+        let width = dataset.items().map_or(1, |items| self.length(items));
+        Ok(Table { dataset, rows: self.length(dataset.rows()), width, values })
+    }
+
+    /// All events.
+    pub fn events(&self) -> Result<Vec<Event>, Error> {
+        let [time, clearance, kind, rate] =
+            self.tables(["event_time", "event_clearance", "event_kind", "event_rate"])?;
+        (0..time.len())
+            .map(|k| {
+                Ok(Event {
+                    time: time[k],
+                    clearance: self.clearance_index(clearance[k])?,
+                    kind: self.event_kind(kind[k])?,
+                    rate: rate[k],
+                })
+            })
+            .collect()
+    }
+
+    /// All contacts.
+    pub fn contacts(&self) -> Result<Vec<Contact>, Error> {
+        let [clearance, begin, end, impact_rate] = self.tables([
+            "contact_clearance",
+            "contact_begin",
+            "contact_end",
+            "contact_impact_rate",
+        ])?;
+        let [peak_penetration, peak_force, peak_time, dissipated] = self.tables([
+            "contact_peak_penetration",
+            "contact_peak_force",
+            "contact_peak_time",
+            "contact_dissipated",
+        ])?;
+        (0..begin.len())
+            .map(|k| {
+                Ok(Contact {
+                    clearance: self.clearance_index(clearance[k])?,
+                    begin: begin[k],
+                    end: end[k],
+                    impact_rate: impact_rate[k],
+                    peak_penetration: peak_penetration[k],
+                    peak_force: peak_force[k],
+                    peak_time: peak_time[k],
+                    dissipated: dissipated[k],
+                })
+            })
+            .collect()
+    }
+
+    /// All local maxima of normal forces.
+    pub fn peaks(&self) -> Result<Vec<Peak>, Error> {
+        let [time, clearance, force] =
+            self.tables(["peak_time", "peak_clearance", "peak_force"])?;
+        (0..time.len())
+            .map(|k| {
+                let clearance = self.clearance_index(clearance[k])?;
+                Ok(Peak { time: time[k], clearance, force: force[k] })
+            })
+            .collect()
+    }
+
+    /// The values of several datasets of one dimension.
+    fn tables<const N: usize>(&self, names: [&str; N]) -> Result<[Vec<f64>; N], Error> {
+        let mut tables = [const { Vec::new() }; N];
+        for (table, name) in tables.iter_mut().zip(names) {
+            *table = self.table(name)?.values;
+        }
+        Ok(tables)
+    }
+
+    fn clearance_index(&self, value: f64) -> Result<usize, Error> {
+        let index = value as usize;
+        if value < 0.0 || index >= self.length(Dimension::Clearance) {
+            return Err(self.damaged(format!("it speaks of a clearance with index {value}")));
+        }
+        Ok(index)
+    }
+
+    fn event_kind(&self, value: f64) -> Result<EventKind, Error> {
+        [
+            EventKind::ContactBegins,
+            EventKind::ContactEnds,
+            EventKind::FrictionKink,
+            EventKind::Tension,
+        ]
+        .into_iter()
+        .find(|kind| f64::from(*kind as u8) == value)
+        .ok_or_else(|| self.damaged(format!("there is no kind of event {value}")))
+    }
+
+    fn read_attributes(&self) -> Result<Vec<(String, Attribute)>, Error> {
+        let read = || -> hdf5::Result<Vec<(String, Attribute)>> {
+            let mut attributes = Vec::new();
+            let order = (IndexType::CreationOrder, IterationOrder::Increasing);
+            for name in self.file.attr_names_by(order.0, order.1)? {
+                if let Some(attribute) = Attribute::read(&self.file, &name)? {
+                    attributes.push((name, attribute));
+                }
+            }
+            Ok(attributes)
+        };
+        read().map_err(|error| self.failed("read the attributes of", error))
+    }
+
+    fn check_schema(&self) -> Result<(), Error> {
+        let path = self.path.clone();
+        match self.attribute("schema_version") {
+            Some(Attribute::Integer(version)) if *version > SCHEMA_VERSION => {
+                Err(Error::Newer { path, found: *version })
+            }
+            Some(Attribute::Integer(_)) => Ok(()),
+            _ => Err(Error::NotAResult { path, missing: "it has no schema_version".to_owned() }),
+        }
+    }
+
+    fn read_length(&self, dimension: Dimension) -> Result<usize, Error> {
+        let name = dimension.name();
+        let (path, missing) = (self.path.clone(), format!("it has no dimension \"{name}\""));
+        match self.file.dataset(name).map(|scale| scale.shape()) {
+            Ok(shape) if shape.len() == 1 => Ok(shape[0]),
+            _ => Err(Error::NotAResult { path, missing }),
+        }
+    }
+
+    fn read_names(&self, dimension: Dimension) -> Result<Vec<String>, Error> {
+        let named = [Dimension::Body, Dimension::Joint, Dimension::Clearance, Dimension::Drive];
+        if !named.contains(&dimension) || self.length(dimension) == 0 {
+            return Ok(Vec::new());
+        }
+        let meanings = self
+            .file
+            .dataset(dimension.name())
+            .and_then(|scale| Attribute::read(&scale, "flag_meanings"))
+            .map_err(|error| self.failed("read the names of", error))?;
+        let names: Vec<String> = match meanings {
+            Some(Attribute::Text(names)) => names.split(' ').map(str::to_owned).collect(),
+            _ => Vec::new(),
+        };
+        if names.len() == self.length(dimension) {
+            return Ok(names);
+        }
+        let (count, name) = (self.length(dimension), dimension.name());
+        Err(self.damaged(format!("{name} has {count} items and {} names", names.len())))
+    }
+
+    /// Every dataset that is there has the shape that the dimensions ask for.
+    fn check_shapes(&self) -> Result<(), Error> {
+        for dataset in DATASETS.iter().filter(|dataset| self.file.link_exists(dataset.name)) {
+            let found = self
+                .file
+                .dataset(dataset.name)
+                .map_err(|error| self.failed(&format!("open {} of", dataset.name), error))?
+                .shape();
+            let expected: Vec<usize> = [dataset.rows()]
+                .into_iter()
+                .chain(dataset.items())
+                .map(|dimension| self.length(dimension))
+                .collect();
+            if found != expected {
+                let name = dataset.name;
+                return Err(self.damaged(format!("{name} has shape {found:?}, not {expected:?}")));
+            }
+        }
+        Ok(())
+    }
+
+    fn damaged(&self, what: String) -> Error {
+        Error::Damaged { path: self.path.clone(), what }
+    }
+
+    fn failed(&self, attempt: &str, error: hdf5::Error) -> Error {
+        let source = LibraryError::from(error);
+        Error::Library { attempt: attempt.to_owned(), path: self.path.clone(), source }
+    }
+}
+
+/// Opens an HDF5 file for reading, or says what else the path is.
+fn open_file(path: &Path) -> Result<File, Error> {
+    let system = |source| Error::System { attempt: "open", path: path.to_owned(), source };
+    let found = std::fs::metadata(path).map_err(system)?;
+    if !found.is_file() {
+        return Err(Error::NotPlain { path: path.to_owned() });
+    }
+    std::fs::File::open(path).map_err(system)?;
+    if path.to_str().is_none() {
+        return Err(system(SystemError::new(ErrorKind::InvalidInput, "its name is not UTF-8")));
+    }
+    File::open(path).map_err(|error| {
+        let path = path.to_owned();
+        if error.contains_minor(MinorErrorCode::Truncated) {
+            Error::Truncated { path }
+        } else if error.contains_minor(MinorErrorCode::NotHdf5) {
+            Error::NotHdf5 { path }
+        } else {
+            Error::Library { attempt: "open".to_owned(), path, source: error.into() }
+        }
+    })
+}

@@ -1,0 +1,392 @@
+//! What a result file holds: one table for the writer, the reader and whoever lists columns.
+
+use crate::mechanism::{BodyObservation, ClearanceObservation, JointObservation, Observation};
+use crate::run::{Contact, Event, Peak};
+
+/// Version of the layout; it grows when a name is dropped or changes its meaning.
+pub const SCHEMA_VERSION: i64 = 1;
+
+/// A dimension, and the dataset that is its scale.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Dimension {
+    /// Samples; the only scale whose values are not counted from 0.
+    Time,
+    /// Bodies, the driven ones too.
+    Body,
+    /// Joints.
+    Joint,
+    /// Joints with clearance.
+    Clearance,
+    /// Drives.
+    Drive,
+    /// Events.
+    Event,
+    /// Contacts.
+    Contact,
+    /// Peaks of normal forces.
+    Peak,
+}
+
+impl Dimension {
+    /// All, in the order in which they stand in a file.
+    pub const ALL: [Dimension; 8] = [
+        Dimension::Time,
+        Dimension::Body,
+        Dimension::Joint,
+        Dimension::Clearance,
+        Dimension::Drive,
+        Dimension::Event,
+        Dimension::Contact,
+        Dimension::Peak,
+    ];
+
+    /// Name of the dimension and of its scale.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Dimension::Time => "time",
+            Dimension::Body => "body",
+            Dimension::Joint => "joint",
+            Dimension::Clearance => "clearance",
+            Dimension::Drive => "drive",
+            Dimension::Event => "event",
+            Dimension::Contact => "contact",
+            Dimension::Peak => "peak",
+        }
+    }
+
+    /// `long_name` of the scale.
+    pub const fn long_name(self) -> &'static str {
+        match self {
+            Dimension::Time => "time",
+            Dimension::Body => "index of the body",
+            Dimension::Joint => "index of the joint",
+            Dimension::Clearance => "index of the joint with clearance",
+            Dimension::Drive => "index of the drive",
+            Dimension::Event => "index of the event",
+            Dimension::Contact => "index of the contact",
+            Dimension::Peak => "index of the peak of a normal force",
+        }
+    }
+}
+
+/// How the values of a dataset are stored.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Values {
+    /// 64-bit floating point.
+    Real,
+    /// 32-bit integer: an index.
+    Index,
+    /// 8-bit integer; the meanings of 0, 1, … in order.
+    Flag(&'static [&'static str]),
+}
+
+/// Where the values of a dataset come from, which also gives its dimensions.
+#[derive(Debug, Clone, Copy)]
+pub enum Source {
+    /// A value of each sample.
+    Sample(fn(&Observation) -> f64),
+    /// A value of each body at each sample.
+    Body(fn(&BodyObservation) -> f64),
+    /// A value of each joint with clearance at each sample.
+    Clearance(fn(&ClearanceObservation) -> f64),
+    /// A value of each joint at each sample.
+    Joint(fn(&JointObservation) -> f64),
+    /// The torque of each drive at each sample.
+    Drive,
+    /// A value of each event.
+    Event(fn(&Event) -> f64),
+    /// A value of each contact.
+    Contact(fn(&Contact) -> f64),
+    /// A value of each peak of a normal force.
+    Peak(fn(&Peak) -> f64),
+}
+
+/// A dataset of the result file.
+#[derive(Debug, Clone, Copy)]
+pub struct Dataset {
+    /// Name.
+    pub name: &'static str,
+    /// Attribute `units`, as UDUNITS reads it; `1` where there is none.
+    pub unit: &'static str,
+    /// Attribute `long_name`.
+    pub long_name: &'static str,
+    /// How the values are stored.
+    pub values: Values,
+    /// Where they come from.
+    pub source: Source,
+}
+
+impl Dataset {
+    /// The dimension that grows: samples, events, contacts or peaks.
+    pub const fn rows(&self) -> Dimension {
+        match self.source {
+            Source::Event(_) => Dimension::Event,
+            Source::Contact(_) => Dimension::Contact,
+            Source::Peak(_) => Dimension::Peak,
+            _ => Dimension::Time,
+        }
+    }
+
+    /// The dimension across, where each row has several values.
+    pub const fn items(&self) -> Option<Dimension> {
+        match self.source {
+            Source::Body(_) => Some(Dimension::Body),
+            Source::Clearance(_) => Some(Dimension::Clearance),
+            Source::Joint(_) => Some(Dimension::Joint),
+            Source::Drive => Some(Dimension::Drive),
+            _ => None,
+        }
+    }
+
+    /// The dataset of this name.
+    pub fn find(name: &str) -> Option<&'static Dataset> {
+        DATASETS.iter().find(|dataset| dataset.name == name)
+    }
+}
+
+/// Name of a single column: `angle.coupler`, or the dataset's own where it is one column.
+pub fn column_name(dataset: &str, item: Option<&str>) -> String {
+    item.map_or(dataset.to_owned(), |item| format!("{dataset}.{item}"))
+}
+
+const fn real(
+    name: &'static str,
+    unit: &'static str,
+    long_name: &'static str,
+    source: Source,
+) -> Dataset {
+    Dataset { name, unit, long_name, values: Values::Real, source }
+}
+
+const fn index(name: &'static str, long_name: &'static str, source: Source) -> Dataset {
+    Dataset { name, unit: "1", long_name, values: Values::Index, source }
+}
+
+const fn flag(
+    name: &'static str,
+    long_name: &'static str,
+    meanings: &'static [&'static str],
+    source: Source,
+) -> Dataset {
+    Dataset { name, unit: "1", long_name, values: Values::Flag(meanings), source }
+}
+
+/// Every dataset but the index scales, in the order in which they stand in a file.
+pub static DATASETS: [Dataset; 45] = {
+    use Source::{Body, Clearance, Contact, Drive, Event, Joint, Peak, Sample};
+    [
+        real("time", "s", "time", Sample(|o| o.time)),
+        real("position_x", "m", "x of the mass centre, fixed frame", Body(|b| b.position[0])),
+        real("position_y", "m", "y of the mass centre, fixed frame", Body(|b| b.position[1])),
+        real("angle", "rad", "angle of the body, not wrapped", Body(|b| b.angle)),
+        real("velocity_x", "m/s", "x of the mass centre's velocity", Body(|b| b.velocity[0])),
+        real("velocity_y", "m/s", "y of the mass centre's velocity", Body(|b| b.velocity[1])),
+        real("angular_velocity", "rad/s", "angular rate of the body", Body(|b| b.angular_velocity)),
+        real(
+            "acceleration_x",
+            "m/s^2",
+            "x of the mass centre's acceleration",
+            Body(|b| b.acceleration[0]),
+        ),
+        real(
+            "acceleration_y",
+            "m/s^2",
+            "y of the mass centre's acceleration",
+            Body(|b| b.acceleration[1]),
+        ),
+        real(
+            "angular_acceleration",
+            "rad/s^2",
+            "angular acceleration of the body",
+            Body(|b| b.angular_acceleration),
+        ),
+        real(
+            "clearance_x",
+            "m",
+            "x of the journal centre minus the bearing centre, fixed frame",
+            Clearance(|c| c.offset[0]),
+        ),
+        real(
+            "clearance_y",
+            "m",
+            "y of the journal centre minus the bearing centre, fixed frame",
+            Clearance(|c| c.offset[1]),
+        ),
+        real(
+            "eccentricity",
+            "m",
+            "distance of the journal centre from the bearing centre",
+            Clearance(|c| c.eccentricity),
+        ),
+        real(
+            "penetration",
+            "m",
+            "eccentricity minus radial clearance; negative in flight",
+            Clearance(|c| c.penetration),
+        ),
+        real(
+            "penetration_rate",
+            "m/s",
+            "rate of the penetration",
+            Clearance(|c| c.penetration_rate),
+        ),
+        real(
+            "slip_velocity",
+            "m/s",
+            "velocity along t of the journal's contact point relative to the bearing's",
+            Clearance(|c| c.slip_velocity),
+        ),
+        real(
+            "normal_force",
+            "N",
+            "normal force, which pushes the journal along -n",
+            Clearance(|c| c.normal_force),
+        ),
+        real(
+            "tangential_force",
+            "N",
+            "tangential force on the journal, along t",
+            Clearance(|c| c.tangential_force),
+        ),
+        flag(
+            "in_contact",
+            "whether the journal touches the bearing",
+            &["flight", "contact"],
+            Clearance(|c| if c.in_contact { 1.0 } else { 0.0 }),
+        ),
+        real(
+            "joint_force_x",
+            "N",
+            "x of the joint's force on its second body",
+            Joint(|j| j.force[0]),
+        ),
+        real(
+            "joint_force_y",
+            "N",
+            "y of the joint's force on its second body",
+            Joint(|j| j.force[1]),
+        ),
+        real("joint_moment", "N m", "moment of the joint on its second body", Joint(|j| j.moment)),
+        real("drive_torque", "N m", "torque of the drive on the second body of its joint", Drive),
+        real("energy_kinetic", "J", "kinetic energy", Sample(|o| o.energy.kinetic)),
+        real(
+            "energy_potential",
+            "J",
+            "potential energy of gravity and springs",
+            Sample(|o| o.energy.potential),
+        ),
+        real("energy_elastic", "J", "energy stored in contacts", Sample(|o| o.energy.elastic)),
+        real(
+            "energy_dissipated",
+            "J",
+            "energy dissipated since the start by contact damping, friction and dampers",
+            Sample(|o| o.energy.dissipated),
+        ),
+        real(
+            "drive_work",
+            "J",
+            "work of the drives since the start",
+            Sample(|o| o.energy.drive_work),
+        ),
+        real(
+            "load_work",
+            "J",
+            "work of applied forces and torques since the start",
+            Sample(|o| o.energy.load_work),
+        ),
+        real(
+            "energy_residual",
+            "J",
+            "what the energy balance is off by",
+            Sample(|o| o.energy.residual),
+        ),
+        real("event_time", "s", "time of the event", Event(|e| e.time)),
+        index("event_clearance", "index of the event's clearance", Event(|e| e.clearance as f64)),
+        flag(
+            "event_kind",
+            "kind of the event",
+            &["contact_begins", "contact_ends", "friction_kink", "tension_begins_or_ends"],
+            Event(|e| f64::from(e.kind as u8)),
+        ),
+        real(
+            "event_rate",
+            "m/s",
+            "penetration rate at the event; slip velocity at a friction kink",
+            Event(|e| e.rate),
+        ),
+        index(
+            "contact_clearance",
+            "index of the contact's clearance",
+            Contact(|c| c.clearance as f64),
+        ),
+        real("contact_begin", "s", "begin of the contact", Contact(|c| c.begin)),
+        real("contact_end", "s", "end of the contact; NaN while open", Contact(|c| c.end)),
+        real(
+            "contact_impact_rate",
+            "m/s",
+            "penetration rate at the begin of the contact",
+            Contact(|c| c.impact_rate),
+        ),
+        real(
+            "contact_peak_penetration",
+            "m",
+            "largest penetration of the contact",
+            Contact(|c| c.peak_penetration),
+        ),
+        real(
+            "contact_peak_force",
+            "N",
+            "largest normal force of the contact",
+            Contact(|c| c.peak_force),
+        ),
+        real(
+            "contact_peak_time",
+            "s",
+            "time of the contact's largest normal force",
+            Contact(|c| c.peak_time),
+        ),
+        real(
+            "contact_dissipated",
+            "J",
+            "energy dissipated in the contact by damping and friction",
+            Contact(|c| c.dissipated),
+        ),
+        real("peak_time", "s", "time of the local maximum of a normal force", Peak(|p| p.time)),
+        index("peak_clearance", "index of the peak's clearance", Peak(|p| p.clearance as f64)),
+        real("peak_force", "N", "normal force at its local maximum", Peak(|p| p.force)),
+    ]
+};
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::run::EventKind;
+    use std::collections::HashSet;
+
+    #[test]
+    fn every_dataset_has_its_own_name_and_says_what_it_is() {
+        let names: HashSet<_> = DATASETS.iter().map(|dataset| dataset.name).collect();
+        assert_eq!(names.len(), DATASETS.len());
+        for dataset in &DATASETS {
+            assert!(!dataset.unit.is_empty() && !dataset.long_name.is_empty(), "{}", dataset.name);
+            let texts = [dataset.name, dataset.unit, dataset.long_name];
+            assert!(texts.iter().all(|text| text.is_ascii()), "{}", dataset.name);
+        }
+    }
+
+    #[test]
+    fn the_meanings_of_event_kinds_stand_in_the_order_of_their_numbers() {
+        let Some(Values::Flag(meanings)) = Dataset::find("event_kind").map(|kind| kind.values)
+        else {
+            panic!("event_kind is a flag");
+        };
+        for (kind, meaning) in [
+            (EventKind::ContactBegins, "contact_begins"),
+            (EventKind::ContactEnds, "contact_ends"),
+            (EventKind::FrictionKink, "friction_kink"),
+            (EventKind::Tension, "tension_begins_or_ends"),
+        ] {
+            assert_eq!(meanings[kind as usize], meaning);
+        }
+    }
+}

@@ -1,0 +1,322 @@
+//! The HDF5 file as it is being written: made with all its datasets, then grown by blocks of rows.
+
+use super::dimension_scale::{attach_scale, set_scale};
+use super::header::{Ending, Header, Outcome};
+use super::schema::{DATASETS, Dataset, Dimension, SCHEMA_VERSION, Values};
+use super::{Attribute, Error};
+use hdf5::file::{AttrCreationOrder, LibraryVersion, LinkCreationOrder};
+use hdf5::{Extent, File, H5Type, SimpleExtents};
+use ndarray::ArrayView2;
+use sha2::{Digest, Sha256};
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+/// Rows of a chunk of the file, and of a block.
+pub(super) const CHUNK_ROWS: usize = 4096;
+
+/// Effort of the compression, 0 to 9.
+const DEFLATE: u8 = 4;
+
+/// Rows on their way to the file: for each dataset of a growing dimension, in the order of
+/// [`DATASETS`], its values row by row.
+#[derive(Debug)]
+pub(super) struct Block {
+    /// The dimension that grows.
+    pub dimension: Dimension,
+    /// Number of rows.
+    pub rows: usize,
+    /// Values of each dataset.
+    pub columns: Vec<Vec<f64>>,
+}
+
+impl Block {
+    /// A block without rows.
+    pub fn new(dimension: Dimension) -> Self {
+        Block { dimension, rows: 0, columns: vec![Vec::new(); datasets_of(dimension).count()] }
+    }
+}
+
+/// The datasets that grow with a dimension.
+pub(super) fn datasets_of(dimension: Dimension) -> impl Iterator<Item = &'static Dataset> {
+    DATASETS.iter().filter(move |dataset| dataset.rows() == dimension)
+}
+
+/// A dataset of the open file.
+struct Open {
+    dataset: &'static Dataset,
+    /// Values in a row.
+    width: usize,
+    handle: hdf5::Dataset,
+}
+
+/// The open file. `handles` and `scales` must be dropped before the file is closed: otherwise
+/// closing says it went well and writes nothing.
+pub(super) struct Store {
+    handles: Vec<Open>,
+    scales: Vec<(Dimension, hdf5::Dataset)>,
+    rows: [usize; Dimension::ALL.len()],
+    file: File,
+    path: PathBuf,
+}
+
+impl Store {
+    /// Makes the file at `at` with all its attributes and empty datasets; errors name `path`.
+    pub fn create(at: &Path, path: &Path, header: &Header) -> Result<Self, Error> {
+        let file = create_file(at).map_err(failed("create", path))?;
+        write_header(&file, header).map_err(failed("write the attributes of", path))?;
+        let mut store = Store {
+            handles: Vec::new(),
+            scales: Vec::new(),
+            rows: [0; Dimension::ALL.len()],
+            file,
+            path: path.to_owned(),
+        };
+        store.create_scales(header).map_err(failed("make the dimensions of", path))?;
+        store.create_datasets(header).map_err(failed("make the datasets of", path))?;
+        Ok(store)
+    }
+
+    fn create_scales(&mut self, header: &Header) -> hdf5::Result<()> {
+        for (id, dimension) in Dimension::ALL.into_iter().enumerate() {
+            let handle = match names(header, dimension) {
+                Some(names) => named_scale(&self.file, dimension, names)?,
+                None if dimension == Dimension::Time => {
+                    create_growing::<f64>(&self.file, dimension.name(), None)?
+                }
+                None => create_growing::<i32>(&self.file, dimension.name(), None)?,
+            };
+            set_scale(&handle, dimension.name())?;
+            handle.new_attr::<i32>().create("_Netcdf4Dimid")?.write_scalar(&(id as i32))?;
+            let unit = if dimension == Dimension::Time { "s" } else { "1" };
+            Attribute::from(unit).write(&handle, "units")?;
+            Attribute::from(dimension.long_name()).write(&handle, "long_name")?;
+            self.scales.push((dimension, handle));
+        }
+        Ok(())
+    }
+
+    fn create_datasets(&mut self, header: &Header) -> hdf5::Result<()> {
+        for dataset in &DATASETS {
+            let width =
+                dataset.items().map(|items| names(header, items).map_or(0, <[String]>::len));
+            let handle = if dataset.name == Dimension::Time.name() {
+                self.scale(Dimension::Time).clone()
+            } else {
+                let handle = create_dataset(&self.file, dataset, width)?;
+                attach_scale(&handle, self.scale(dataset.rows()), 0)?;
+                if let Some(items) = dataset.items() {
+                    attach_scale(&handle, self.scale(items), 1)?;
+                }
+                handle
+            };
+            self.handles.push(Open { dataset, width: width.unwrap_or(1), handle });
+        }
+        Ok(())
+    }
+
+    /// The scale of a dimension.
+    fn scale(&self, dimension: Dimension) -> &hdf5::Dataset {
+        &self.scales[dimension as usize].1
+    }
+
+    /// Writes a block behind the rows that are there.
+    pub fn append(&mut self, block: &Block) -> Result<(), Error> {
+        let begin = self.rows[block.dimension as usize];
+        let rows = begin..begin + block.rows;
+        self.rows[block.dimension as usize] = rows.end;
+        if block.dimension != Dimension::Time {
+            let indices: Vec<i32> = rows.clone().map(|row| row as i32).collect();
+            append_rows(self.scale(block.dimension), rows.clone(), None, &indices)
+                .map_err(failed(format!("write {} to", block.dimension.name()), &self.path))?;
+        }
+        let open = self.handles.iter().filter(|open| open.dataset.rows() == block.dimension);
+        for (open, values) in open.zip(&block.columns) {
+            write_values(open, rows.clone(), values)
+                .map_err(failed(format!("write {} to", open.dataset.name), &self.path))?;
+        }
+        Ok(())
+    }
+
+    /// Writes how the run ended and closes the file.
+    pub fn close(self, ending: &Ending) -> Result<(), Error> {
+        let Store { handles, scales, file, path, .. } = self;
+        drop((handles, scales));
+        write_ending(&file, ending).map_err(failed("write the ending of", &path))?;
+        file.flush().map_err(failed("write", &path))?;
+        file.close().map_err(failed("close", &path))
+    }
+}
+
+/// An error of the library while attempting something on a file.
+fn failed(attempt: impl Into<String>, path: &Path) -> impl FnOnce(hdf5::Error) -> Error {
+    move |error| Error::Library {
+        attempt: attempt.into(),
+        path: path.to_owned(),
+        source: error.into(),
+    }
+}
+
+/// Names of the items of a dimension that does not grow.
+fn names(header: &Header, dimension: Dimension) -> Option<&[String]> {
+    match dimension {
+        Dimension::Body => Some(&header.bodies),
+        Dimension::Joint => Some(&header.joints),
+        Dimension::Clearance => Some(&header.clearances),
+        Dimension::Drive => Some(&header.drives),
+        _ => None,
+    }
+}
+
+/// Makes an empty file that any HDF5 from 1.8 reads. Chunks are written whole and once, so that
+/// caching them would only cost memory.
+fn create_file(at: &Path) -> hdf5::Result<File> {
+    File::with_options()
+        .with_fapl(|access| {
+            access.libver_bounds(LibraryVersion::V18, LibraryVersion::V110).chunk_cache(1, 0, 0.0)
+        })
+        .with_fcpl(|creation| {
+            creation
+                .link_creation_order(LinkCreationOrder::Indexed)
+                .attr_creation_order(AttrCreationOrder::Indexed)
+                .obj_track_times(false)
+        })
+        .create(at)
+}
+
+/// The scale of a dimension whose items have names, which flags tell.
+fn named_scale(file: &File, dimension: Dimension, names: &[String]) -> hdf5::Result<hdf5::Dataset> {
+    let indices: Vec<i32> = (0..names.len() as i32).collect();
+    let scale = file
+        .new_dataset::<i32>()
+        .obj_track_times(false)
+        .attr_creation_order(AttrCreationOrder::Indexed)
+        .shape(names.len())
+        .create(dimension.name())?;
+    scale.write(&indices)?;
+    if !names.is_empty() {
+        scale.new_attr::<i32>().shape(names.len()).create("flag_values")?.write(&indices)?;
+        Attribute::from(names.join(" ")).write(&scale, "flag_meanings")?;
+    }
+    Ok(scale)
+}
+
+/// Makes a compressed dataset without rows; `width` is the number of values in a row, `None` where
+/// the dataset has one dimension.
+fn create_growing<T: H5Type>(
+    file: &File,
+    name: &str,
+    width: Option<usize>,
+) -> hdf5::Result<hdf5::Dataset> {
+    let extents: Vec<Extent> =
+        [Extent::resizable(0)].into_iter().chain(width.map(Extent::fixed)).collect();
+    let chunk: Vec<usize> =
+        [CHUNK_ROWS].into_iter().chain(width.map(|width| width.max(1))).collect();
+    file.new_dataset::<T>()
+        .shuffle()
+        .deflate(DEFLATE)
+        .chunk(chunk)
+        .obj_track_times(false)
+        .attr_creation_order(AttrCreationOrder::Indexed)
+        .shape(SimpleExtents::from_vec(extents))
+        .create(name)
+}
+
+fn create_dataset(
+    file: &File,
+    dataset: &Dataset,
+    width: Option<usize>,
+) -> hdf5::Result<hdf5::Dataset> {
+    let handle = match dataset.values {
+        Values::Real => create_growing::<f64>(file, dataset.name, width),
+        Values::Index => create_growing::<i32>(file, dataset.name, width),
+        Values::Flag(_) => create_growing::<i8>(file, dataset.name, width),
+    }?;
+    Attribute::from(dataset.unit).write(&handle, "units")?;
+    Attribute::from(dataset.long_name).write(&handle, "long_name")?;
+    if let Values::Flag(meanings) = dataset.values {
+        let values: Vec<i8> = (0..meanings.len() as i8).collect();
+        handle.new_attr::<i8>().shape(meanings.len()).create("flag_values")?.write(&values)?;
+        Attribute::from(meanings.join(" ")).write(&handle, "flag_meanings")?;
+    }
+    Ok(handle)
+}
+
+/// Converts values to those stored and appends them.
+fn write_values(open: &Open, rows: Range<usize>, values: &[f64]) -> hdf5::Result<()> {
+    let width = open.dataset.items().map(|_| open.width);
+    match open.dataset.values {
+        Values::Real => append_rows(&open.handle, rows, width, values),
+        Values::Index => {
+            let values: Vec<i32> = values.iter().map(|&value| value as i32).collect();
+            append_rows(&open.handle, rows, width, &values)
+        }
+        Values::Flag(_) => {
+            let values: Vec<i8> = values.iter().map(|&value| value as i8).collect();
+            append_rows(&open.handle, rows, width, &values)
+        }
+    }
+}
+
+/// Grows a dataset to the end of `rows` and writes these rows.
+fn append_rows<T: H5Type>(
+    handle: &hdf5::Dataset,
+    rows: Range<usize>,
+    width: Option<usize>,
+    values: &[T],
+) -> hdf5::Result<()> {
+    let Some(width) = width else {
+        handle.resize(rows.end)?;
+        return handle.write_slice(values, rows);
+    };
+    handle.resize((rows.end, width))?;
+    let view = ArrayView2::from_shape((rows.len(), width), values)
+        .map_err(|error| hdf5::Error::from(error.to_string()))?;
+    handle.write_slice(view, ndarray::s![rows, ..])
+}
+
+/// Writes the attributes of the root that are known before the run.
+fn write_header(file: &File, header: &Header) -> hdf5::Result<()> {
+    let (major, minor, patch) = hdf5::library_version();
+    let sha256: String =
+        Sha256::digest(&header.case_text).iter().map(|byte| format!("{byte:02x}")).collect();
+    let own = [
+        ("Conventions", Attribute::from("CF-1.11")),
+        ("title", Attribute::from(&*header.title)),
+        ("schema_version", Attribute::from(SCHEMA_VERSION)),
+        ("source", Attribute::from(concat!("freeplay ", env!("CARGO_PKG_VERSION")))),
+        ("hdf5_version", Attribute::from(format!("{major}.{minor}.{patch}"))),
+        ("sundials_version", Attribute::from(&*header.sundials_version)),
+        ("case_name", Attribute::from(&*header.name)),
+        ("case_toml", Attribute::from(&*header.case_text)),
+        ("case_sha256", Attribute::from(sha256)),
+    ];
+    for (name, attribute) in own {
+        attribute.write(file, name)?;
+    }
+    for (name, attribute) in &header.attributes {
+        attribute.write(file, name)?;
+    }
+    Attribute::from(&*header.started_utc).write(file, "started_utc")?;
+    Attribute::from("running").write(file, "run_status")
+}
+
+/// Writes the attributes of the root that the end of the run brings.
+fn write_ending(file: &File, ending: &Ending) -> hdf5::Result<()> {
+    for count in &ending.rulings {
+        let name = format!("ruling_{}_count", count.name);
+        Attribute::from(count.value as i64).write(file, &name)?;
+    }
+    for count in &ending.counts {
+        let name = format!("solver_{}", count.name);
+        Attribute::from(count.value as i64).write(file, &name)?;
+    }
+    Attribute::from(&*ending.finished_utc).write(file, "finished_utc")?;
+    file.delete_attr("run_status")?;
+    match &ending.outcome {
+        Outcome::Complete => Attribute::from("complete").write(file, "run_status"),
+        Outcome::Failed { reason } => {
+            Attribute::from("failed").write(file, "run_status")?;
+            Attribute::from(&**reason).write(file, "run_failure")
+        }
+    }
+}

@@ -1,0 +1,225 @@
+//! The recorder that writes a result file while the run goes on.
+//!
+//! Rows gather in blocks of one chunk. A thread compresses and writes each full block, while the
+//! run fills the next; the run waits where it is a whole block ahead, so that no more than two
+//! blocks are ever in memory.
+
+use super::Error;
+use super::header::{Ending, Header, Outcome};
+use super::publish::Draft;
+use super::schema::{Dimension, Source};
+use super::store::{Block, CHUNK_ROWS, Store, datasets_of};
+use crate::mechanism::Observation;
+use crate::run::{Contact, Event, Peak, Recorder};
+use std::path::{Path, PathBuf};
+use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
+use std::thread::JoinHandle;
+
+/// What the writing thread is told.
+enum Message {
+    Block(Block),
+    Finish(Ending),
+}
+
+/// Writes a result file. Errors of the writing thread come back from the next call. A writer that
+/// is dropped before [`finish`](Writer::finish) leaves no file.
+#[derive(Debug)]
+pub struct Writer {
+    sender: Option<SyncSender<Message>>,
+    thread: Option<JoinHandle<Result<(), Error>>>,
+    samples: Block,
+    events: Block,
+    contacts: Block,
+    peaks: Block,
+    widths: Widths,
+    draft: Option<Draft>,
+    path: PathBuf,
+}
+
+/// Lengths of the lists of an observation.
+#[derive(Debug, PartialEq, Eq)]
+struct Widths {
+    bodies: usize,
+    joints: usize,
+    clearances: usize,
+    drives: usize,
+}
+
+impl Writer {
+    /// Begins a result file at `path`; with `force` a complete one will replace an old file.
+    ///
+    /// # Errors
+    /// [`Error::Exists`], [`Error::NoFolder`], [`Error::NotPlain`], or what the operating system
+    /// or the HDF5 library says.
+    pub fn create(path: &Path, header: Header, force: bool) -> Result<Writer, Error> {
+        let draft = Draft::create(path, force)?;
+        let store = Store::create(draft.temporary(), path, &header)?;
+        let (sender, receiver) = sync_channel(0);
+        let thread = std::thread::Builder::new()
+            .name("result file".to_owned())
+            .spawn(move || write(store, &receiver))
+            .map_err(|source| {
+                let path = path.to_owned();
+                Error::System { attempt: "start the thread that writes", path, source }
+            })?;
+        Ok(Writer {
+            sender: Some(sender),
+            thread: Some(thread),
+            samples: Block::new(Dimension::Time),
+            events: Block::new(Dimension::Event),
+            contacts: Block::new(Dimension::Contact),
+            peaks: Block::new(Dimension::Peak),
+            widths: Widths {
+                bodies: header.bodies.len(),
+                joints: header.joints.len(),
+                clearances: header.clearances.len(),
+                drives: header.drives.len(),
+            },
+            draft: Some(draft),
+            path: path.to_owned(),
+        })
+    }
+
+    /// Writes what is left and the ending, and publishes the file: a complete one under the name
+    /// asked for, a failed one there only if nothing is there, else as `NAME.failed.h5` beside
+    /// it. Returns the path of the published file.
+    ///
+    /// # Errors
+    /// What the writing thread met, or [`Error::Taken`], or what the operating system says.
+    pub fn finish(mut self, ending: Ending) -> Result<PathBuf, Error> {
+        for block in [
+            std::mem::replace(&mut self.samples, Block::new(Dimension::Time)),
+            std::mem::replace(&mut self.events, Block::new(Dimension::Event)),
+            std::mem::replace(&mut self.contacts, Block::new(Dimension::Contact)),
+            std::mem::replace(&mut self.peaks, Block::new(Dimension::Peak)),
+        ] {
+            self.send(Message::Block(block))?;
+        }
+        let complete = ending.outcome == Outcome::Complete;
+        self.send(Message::Finish(ending))?;
+        self.join()?;
+        let Some(draft) = self.draft.take() else {
+            return Err(Error::Failed { path: self.path.clone() });
+        };
+        if complete { draft.publish() } else { draft.publish_failed() }
+    }
+
+    /// Gives the thread a message; its error if it has ended.
+    fn send(&mut self, message: Message) -> Result<(), Error> {
+        match &self.sender {
+            Some(sender) if sender.send(message).is_ok() => Ok(()),
+            _ => Err(self.failure()),
+        }
+    }
+
+    /// Waits for the thread to end.
+    fn join(&mut self) -> Result<(), Error> {
+        self.sender = None;
+        match self.thread.take().map(JoinHandle::join) {
+            Some(Ok(result)) => result,
+            Some(Err(panic)) => std::panic::resume_unwind(panic),
+            None => Err(Error::Failed { path: self.path.clone() }),
+        }
+    }
+
+    /// Why the thread ended early.
+    fn failure(&mut self) -> Error {
+        match self.join() {
+            Err(error) => error,
+            Ok(()) => Error::Failed { path: self.path.clone() },
+        }
+    }
+
+    /// The thread's error, if it has ended.
+    fn check(&mut self) -> Result<(), Error> {
+        match &self.thread {
+            Some(thread) if !thread.is_finished() => Ok(()),
+            _ => Err(self.failure()),
+        }
+    }
+
+    /// Counts a row of a block and sends the block if it is full.
+    fn count(&mut self, block: fn(&mut Writer) -> &mut Block) -> Result<(), Error> {
+        self.check()?;
+        let block = block(self);
+        block.rows += 1;
+        if block.rows < CHUNK_ROWS {
+            return Ok(());
+        }
+        let full = std::mem::replace(block, Block::new(block.dimension));
+        self.send(Message::Block(full))
+    }
+}
+
+impl Recorder for Writer {
+    type Error = Error;
+
+    fn sample(&mut self, observation: &Observation) -> Result<(), Error> {
+        let widths = Widths {
+            bodies: observation.bodies.len(),
+            joints: observation.joints.len(),
+            clearances: observation.clearances.len(),
+            drives: observation.drive_torques.len(),
+        };
+        assert!(widths == self.widths, "an observation has the lists that the header names");
+        for (dataset, column) in datasets_of(Dimension::Time).zip(&mut self.samples.columns) {
+            match dataset.source {
+                Source::Sample(value) => column.push(value(observation)),
+                Source::Body(value) => column.extend(observation.bodies.iter().map(value)),
+                Source::Clearance(value) => column.extend(observation.clearances.iter().map(value)),
+                Source::Joint(value) => column.extend(observation.joints.iter().map(value)),
+                Source::Drive => column.extend(&observation.drive_torques),
+                Source::Event(_) | Source::Contact(_) | Source::Peak(_) => {}
+            }
+        }
+        self.count(|writer| &mut writer.samples)
+    }
+
+    fn event(&mut self, event: Event) -> Result<(), Error> {
+        for (dataset, column) in datasets_of(Dimension::Event).zip(&mut self.events.columns) {
+            if let Source::Event(value) = dataset.source {
+                column.push(value(&event));
+            }
+        }
+        self.count(|writer| &mut writer.events)
+    }
+
+    fn contact(&mut self, contact: Contact) -> Result<(), Error> {
+        for (dataset, column) in datasets_of(Dimension::Contact).zip(&mut self.contacts.columns) {
+            if let Source::Contact(value) = dataset.source {
+                column.push(value(&contact));
+            }
+        }
+        self.count(|writer| &mut writer.contacts)
+    }
+
+    fn peak(&mut self, peak: Peak) -> Result<(), Error> {
+        for (dataset, column) in datasets_of(Dimension::Peak).zip(&mut self.peaks.columns) {
+            if let Source::Peak(value) = dataset.source {
+                column.push(value(&peak));
+            }
+        }
+        self.count(|writer| &mut writer.peaks)
+    }
+}
+
+impl Drop for Writer {
+    /// Waits for the thread, so that nothing is written once the temporary file is gone.
+    fn drop(&mut self) {
+        self.sender = None;
+        if let Some(thread) = self.thread.take() {
+            let _ = thread.join();
+        }
+    }
+}
+
+/// Writes blocks until the ending comes, or the writer is gone.
+fn write(mut store: Store, messages: &Receiver<Message>) -> Result<(), Error> {
+    for message in messages {
+        match message {
+            Message::Block(block) => store.append(&block)?,
+            Message::Finish(ending) => return store.close(&ending),
+        }
+    }
+    Ok(())
+}
