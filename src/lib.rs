@@ -17,3 +17,5 @@ pub mod engine;
 pub mod run;
 pub mod record;
 pub mod case;
+pub mod simulate;
+pub mod cli;

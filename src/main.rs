@@ -1,1 +1,7 @@
-fn main() {}
+//! The `freeplay` program.
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    freeplay::cli::main()
+}

@@ -40,24 +40,21 @@ pub fn kinematic<S: Scalar, R: Recorder>(
     let mut now = mechanism.start().clone();
     let fastest = mechanism.fastest_turn().max(1e-300);
     let rule = gauss();
-    let mut progress = Progress { time: 0.0, step: 0.0, steps: 0, events: 0 };
+    let mut progress = Progress::default();
     for k in 0..schedule.len() {
         let time: S = schedule.time(k);
         let span = time - now.time;
         let parts = (span.to_f64() * fastest / LARGEST_TURN).ceil().max(1.0);
         for part in 1..=parts as u64 {
-            let last = part as f64 == parts;
-            let to = if last {
-                time
-            } else {
-                now.time + (time - now.time) * S::from_f64(1.0 / (parts - part as f64 + 1.0))
-            };
+            let left = parts - part as f64 + 1.0;
+            let to = now.time + (time - now.time) * S::from_f64(1.0 / left);
+            let to = if left > 1.0 { to } else { time };
             advance(mechanism, &mut now, to, &rule)
                 .map_err(|source| Error::System { time: to.to_f64(), source })?;
             progress.steps += 1;
             progress.step = (span.to_f64()) / parts;
             progress.time = to.to_f64();
-            if progress.steps % super::PROGRESS_EVERY == 0
+            if progress.steps.is_multiple_of(super::PROGRESS_EVERY)
                 && watch(&progress) == ControlFlow::Break(())
             {
                 return Err(Error::Interrupted { time: progress.time });
@@ -66,6 +63,7 @@ pub fn kinematic<S: Scalar, R: Recorder>(
         let observation = mechanism.observe(schedule.time(k), &now.integrals);
         recorder.sample(&observation).map_err(Error::Recorder)?;
     }
+    let _ = watch(&progress);
     Ok(RulingCounts::default())
 }
 

@@ -62,7 +62,7 @@ pub enum Error<E: std::error::Error + 'static, R: std::error::Error + 'static> {
 }
 
 /// How far a run is.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Progress {
     /// Simulated time (s).
     pub time: f64,
@@ -72,6 +72,8 @@ pub struct Progress {
     pub steps: u64,
     /// Events so far.
     pub events: u64,
+    /// Contacts begun so far.
+    pub contacts: u64,
 }
 
 /// How often the rulings of the mechanism were called on.
@@ -135,14 +137,16 @@ where
         next_sample: 0,
         contacts: Contacts::default(),
         peaks: Vec::new(),
-        progress: Progress { time: 0.0, step: 0.0, steps: 0, events: 0 },
+        progress: Progress::default(),
         segment: 1,
         counts: RulingCounts::default(),
     };
     run.restart(&start)?;
-    let going = run.go(watch);
+    let going = run.go(&mut *watch);
     // contacts still open and peaks not settled belong to what was simulated, however it ended
     let closing = run.close();
+    // the last word, whether or not it asks to stop
+    let _ = watch(&run.progress);
     going.and(closing).map(|()| run.counts)
 }
 
@@ -163,10 +167,12 @@ where
             self.sample()?;
             match advance {
                 Advance::Event => self.event()?,
-                Advance::Stepped if self.progress.steps % DRIFT_EVERY == 0 => self.hold()?,
+                Advance::Stepped if self.progress.steps.is_multiple_of(DRIFT_EVERY) => {
+                    self.hold()?
+                }
                 Advance::Stepped => {}
             }
-            if self.progress.steps % PROGRESS_EVERY == 0 {
+            if self.progress.steps.is_multiple_of(PROGRESS_EVERY) {
                 self.tell(watch)?;
             }
         }
@@ -332,6 +338,7 @@ where
             peak_time: begin,
             dissipated: 0.0,
         });
+        self.progress.contacts += 1;
         self.touching[k] = Some(Touching::new(number, rates, now.integrals[1 + k]));
         Ok(())
     }

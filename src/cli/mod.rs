@@ -1,0 +1,109 @@
+//! The command line, one file a command.
+
+mod check;
+mod info;
+mod run;
+
+use clap::{Args, Parser, Subcommand};
+use std::error::Error as StdError;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// Reference simulation of planar mechanisms whose revolute joints have clearance.
+#[derive(Debug, Parser)]
+#[command(name = "freeplay", version, about, max_term_width = 100)]
+pub struct CommandLine {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Run a case and write its trajectory.
+    Run(run::Arguments),
+    /// Say what a case describes: freedoms, constraints, stiffnesses, defaults, rulings.
+    Check(check::Arguments),
+    /// Say what a result file holds and how it was made.
+    Info(info::Arguments),
+}
+
+/// A case file, and what the command line changes in it.
+#[derive(Debug, Args)]
+struct CaseArguments {
+    /// Case file (TOML).
+    #[arg(value_name = "CASE")]
+    path: PathBuf,
+    /// Change a key of the case, by its dotted path; the value is TOML, a bare word a string.
+    #[arg(long, value_name = "KEY=VALUE")]
+    set: Vec<crate::case::Override>,
+    /// Remove every clearance: the ideal mechanism.
+    #[arg(long)]
+    ideal: bool,
+}
+
+impl CaseArguments {
+    fn read(&self) -> Result<crate::case::Case, Failure> {
+        let changes = crate::case::Changes { set: self.set.clone(), ideal: self.ideal };
+        crate::case::Case::read(&self.path, &changes).map_err(Failure::input)
+    }
+}
+
+/// Why a command fails, and the exit code that says so.
+#[derive(Debug)]
+struct Failure {
+    code: u8,
+    error: Box<dyn StdError>,
+    /// What became of the work done so far, if there is something to say.
+    rest: Option<String>,
+}
+
+impl Failure {
+    fn with(code: u8, error: impl StdError + 'static) -> Self {
+        Failure { code, error: Box::new(error), rest: None }
+    }
+
+    /// Command line or case file.
+    fn input(error: impl StdError + 'static) -> Self {
+        Failure::with(2, error)
+    }
+
+    /// Output: exists, no space, no permission.
+    fn output(error: impl StdError + 'static) -> Self {
+        Failure::with(3, error)
+    }
+
+    /// Tells the error and its causes on stderr.
+    fn tell(&self) {
+        eprintln!("error: {}", self.error);
+        let mut cause = self.error.source();
+        while let Some(error) = cause {
+            eprintln!("  caused by: {error}");
+            cause = error.source();
+        }
+        if let Some(rest) = &self.rest {
+            eprintln!("{rest}");
+        }
+    }
+}
+
+/// Prints a result on stdout; a reader that has gone away is no error.
+fn print(result: impl std::fmt::Display) {
+    use std::io::Write;
+    let _ = write!(std::io::stdout(), "{result}");
+}
+
+/// Parses the command line and does what it says.
+pub fn main() -> ExitCode {
+    let done = match CommandLine::parse().command {
+        Command::Run(arguments) => run::run(&arguments),
+        Command::Check(arguments) => check::check(&arguments),
+        Command::Info(arguments) => info::info(&arguments),
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            failure.tell();
+            ExitCode::from(failure.code)
+        }
+    }
+}
