@@ -1,6 +1,7 @@
 //! The command line, one file a command.
 
 mod check;
+mod compare;
 mod info;
 mod run;
 
@@ -25,6 +26,8 @@ enum Command {
     Check(check::Arguments),
     /// Say what a result file holds and how it was made.
     Info(info::Arguments),
+    /// Say how far a trajectory agrees with a reference, in digits over time.
+    Compare(compare::Arguments),
 }
 
 /// A case file, and what the command line changes in it.
@@ -98,6 +101,7 @@ pub fn main() -> ExitCode {
         Command::Run(arguments) => run::run(&arguments),
         Command::Check(arguments) => check::check(&arguments),
         Command::Info(arguments) => info::info(&arguments),
+        Command::Compare(arguments) => compare::compare(&arguments),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,
