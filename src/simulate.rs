@@ -1,6 +1,6 @@
 //! From a checked case to a finished run: which arithmetic, which engine, which loop.
 
-use crate::case::{self, Case, EngineName, NormName, SolverPlan};
+use crate::case::{self, Case, EngineName, NormName, Sampling, SolverPlan};
 use crate::dae::{Count, Engine};
 use crate::engine::ida::{self, Ida};
 use crate::mechanism::Mechanism;
@@ -57,6 +57,10 @@ impl<'a> Simulation<'a> {
         let model = Model::new(&case.description).map_err(|complaints| case.reject(complaints))?;
         let mechanism = Mechanism::new(model).map_err(|complaints| case.reject(complaints))?;
         let schedule = Schedule::new(&case.plan.duration, &case.plan.sample_interval);
+        let schedule = match case.plan.sampling {
+            Sampling::Uniform => schedule,
+            Sampling::Adaptive => schedule.adaptive(),
+        };
         Ok(Simulation { case, mechanism, schedule })
     }
 

@@ -11,6 +11,7 @@ pub struct Schedule {
     /// Number of multiples of the interval, zero among them.
     multiples: u64,
     ends_between: bool,
+    adaptive: bool,
 }
 
 impl Schedule {
@@ -23,10 +24,21 @@ impl Schedule {
         let whole = (quotient - nearest).abs() <= quotient * F256::from_f64(1e-60);
         let last = if whole { nearest } else { quotient.floor() };
         let multiples = last.to_f64() as u64 + 1;
-        Schedule { duration, interval, multiples, ends_between: !whole }
+        Schedule { duration, interval, multiples, ends_between: !whole, adaptive: false }
     }
 
-    /// Number of samples.
+    /// The same, with samples at every event and peak, and between them wherever straight lines
+    /// would miss the force curves by more than 1 % of their peaks.
+    pub fn adaptive(self) -> Self {
+        Schedule { adaptive: true, ..self }
+    }
+
+    /// Whether samples are added where things happen.
+    pub fn is_adaptive(&self) -> bool {
+        self.adaptive
+    }
+
+    /// Number of samples, those added where things happen left out.
     pub fn len(&self) -> u64 {
         self.multiples + u64::from(self.ends_between)
     }
