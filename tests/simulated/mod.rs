@@ -2,6 +2,8 @@
 
 #![allow(dead_code, reason = "each file of tests uses its own part")]
 
+pub mod truth;
+
 use freeplay::case::{Case, Changes};
 use freeplay::dae::Count;
 use freeplay::mechanism::Observation;
