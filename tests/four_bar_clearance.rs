@@ -4,15 +4,11 @@
 
 mod simulated;
 
-use freeplay::dae::{Advance, Count, Engine, Snapshot, System};
-use freeplay::engine::ida::{self, Ida};
-use freeplay::mechanism::{Mechanism, Observation};
-use freeplay::model::Model;
-use freeplay::run::{self, EventKind, Progress, Schedule};
-use freeplay::simulate::ida_options;
+use freeplay::mechanism::Observation;
+use freeplay::run::EventKind;
+use simulated::drift::largest_drift;
 use simulated::truth::{Table, digits, scaled, scaled_truth};
-use simulated::{Kept, case, simulate, told};
-use std::ops::ControlFlow;
+use simulated::{Kept, case, simulate};
 
 /// A case of the paper: its letter, its joints with clearance.
 type Paper = (&'static str, &'static [&'static str]);
@@ -208,71 +204,11 @@ fn tension_is_kept_or_cut_as_the_case_says_and_energy_is_balanced_either_way() {
     }
 }
 
-/// An engine that measures, after each step, how far its state has drifted off the constraints.
-struct Drifting {
-    ida: Ida<Mechanism<f64>>,
-    ruler: Mechanism<f64>,
-    largest: f64,
-}
-
-impl Engine<f64> for Drifting {
-    type System = Mechanism<f64>;
-    type Error = ida::Error;
-
-    fn system(&mut self) -> &mut Mechanism<f64> {
-        self.ida.system()
-    }
-
-    fn restart(&mut self, now: &Snapshot<f64>) -> Result<(), ida::Error> {
-        self.ida.restart(now)
-    }
-
-    fn step(&mut self, end: f64) -> Result<Advance, ida::Error> {
-        let advance = self.ida.step(end)?;
-        let Snapshot { time, mut q, mut v, .. } = self.ida.now().clone();
-        let drift = self.ruler.project(time, &mut q, &mut v).unwrap();
-        self.largest = self.largest.max(drift);
-        Ok(advance)
-    }
-
-    fn now(&self) -> &Snapshot<f64> {
-        self.ida.now()
-    }
-
-    fn began(&self) -> f64 {
-        self.ida.began()
-    }
-
-    fn within(&mut self, time: f64, at: &mut Snapshot<f64>) -> Result<(), ida::Error> {
-        self.ida.within(time, at)
-    }
-
-    fn fired(&self) -> &[bool] {
-        self.ida.fired()
-    }
-
-    fn counts(&self) -> Vec<Count> {
-        self.ida.counts()
-    }
-}
-
 #[test]
 fn over_a_second_the_unprojected_state_stays_on_the_constraints() {
     for paper in [CASE_A, CASE_B] {
         let case = case(&format!("cases/four-bar-{}.toml", paper.0), &["run.duration=1"]);
-        let mechanism = Mechanism::new(Model::new(&case.description).unwrap()).unwrap();
-        let options = ida_options(&case.plan.solver);
-        let mut engine = Drifting {
-            ruler: mechanism.clone(),
-            ida: Ida::new(mechanism, options).unwrap(),
-            largest: 0.0,
-        };
-        let schedule = Schedule::new(&case.plan.duration, &case.plan.duration);
-        let mut go_on = |_: &Progress| ControlFlow::Continue(());
-        let mut kept = Kept::default();
-        let tolerance = options.relative_tolerance;
-        told(run::run(&mut engine, &schedule, tolerance, &mut kept, &mut go_on));
-        let drift = engine.largest;
+        let drift = largest_drift(&case);
         assert!(drift <= 1e-11, "case {}: {drift:e} m", paper.0);
         assert!(drift > 0.0, "the drift was looked at");
     }
