@@ -57,7 +57,7 @@ const GRAVITY: &str = r#"
 #[test]
 fn a_journal_on_its_circle_circles_for_ever() {
     let (depth, speed, force) =
-        (1.200_247_193_643_541e-6, 0.524_227_223_559_305_9, 13.724_236_619_547_414);
+        (1.200_247_193_643_541e-6, 0.524_227_223_559_306, 13.724_236_619_547_414);
     let rate = 5000.0 * 2.0 * PI / 60.0;
     let kept = simulate(&case("cases/journal-in-bearing.toml", &[]));
     assert_eq!(kept.samples.len(), 6001);
