@@ -10,7 +10,7 @@ mod recorder;
 mod schedule;
 mod touching;
 
-pub use kinematic::kinematic;
+pub use kinematic::{Assembled, kinematic};
 pub use recorder::*;
 pub use schedule::Schedule;
 
