@@ -65,7 +65,8 @@ impl RunExtremes {
     ) -> Result<Self, Error> {
         let names = assembled.mechanism().model().names().clone();
         let quantities = Quantity::all(&names);
-        let mut tallies = vec![Tally::new(parts); quantities.len()];
+        let tallies = quantities.iter().map(|quantity| Tally::new(parts, quantity.is_signed()));
+        let mut tallies: Vec<Tally> = tallies.collect();
         let mut scan = Scan { assembled: &mut assembled, last: Vec::new() };
         let spans = match parts {
             Some(parts) => (0..parts.count()).map(|k| parts.bounds(k)).collect(),
@@ -104,7 +105,7 @@ impl RunExtremes {
         let breaks: Vec<f64> = file.events()?.iter().map(|event| event.time).collect();
         let mut quantities = Vec::new();
         for quantity in Quantity::all(&names) {
-            let mut tally = Tally::new(parts);
+            let mut tally = Tally::new(parts, quantity.is_signed());
             let values = values_of(file, quantity)?;
             let clearance = match quantity {
                 Quantity::JointForce(joint) => {
@@ -212,7 +213,7 @@ impl Scan<'_> {
         }
         if let [before, middle, after] = &self.last[..] {
             for (k, tally) in tallies.iter_mut().enumerate() {
-                for sign in [1.0, -1.0] {
+                for &sign in tally.signs() {
                     let three = [before.1[k], middle.1[k], after.1[k]].map(|value| sign * value);
                     if stands_out(three) {
                         let (time, value) = maximum([before.0, after.0], |time| {
@@ -245,13 +246,12 @@ impl Recording {
     }
 
     fn into_extremes(self) -> RunExtremes {
-        let tallies = self.values.iter().map(|values| {
-            let mut tally = Tally::new(None);
+        let quantities = self.quantities.into_iter().zip(&self.values).map(|(quantity, values)| {
+            let mut tally = Tally::new(None, quantity.is_signed());
             take_samples(&mut tally, &self.times, values, &[]);
-            tally
+            (quantity, tally)
         });
-        let quantities = self.quantities.into_iter().zip(tallies).collect();
-        RunExtremes { names: self.names, quantities }
+        RunExtremes { names: self.names, quantities: quantities.collect() }
     }
 }
 

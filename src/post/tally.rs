@@ -65,13 +65,14 @@ impl Extremes {
     }
 
     /// Of values that differ by no more than rounding the one taken first stays.
-    fn take(&mut self, candidate: Extreme) {
+    fn take(&mut self, candidate: Extreme, signed: bool) {
         let value = candidate.value;
         let beyond = |than: Extreme, by: f64| by > 1e-13 * than.value.abs().max(value.abs());
         if self.largest.is_none_or(|largest| beyond(largest, value - largest.value)) {
             self.largest = Some(candidate);
         }
-        if self.smallest.is_none_or(|smallest| beyond(smallest, smallest.value - value)) {
+        let smaller = |smallest: Extreme| beyond(smallest, smallest.value - value);
+        if signed && self.smallest.is_none_or(smaller) {
             self.smallest = Some(candidate);
         }
     }
@@ -85,13 +86,20 @@ pub struct Tally {
     /// In each revolution; empty without revolutions.
     pub revolutions: Vec<Extremes>,
     parts: Option<Revolutions>,
+    signed: bool,
 }
 
 impl Tally {
-    /// Nothing yet.
-    pub fn new(parts: Option<Revolutions>) -> Self {
+    /// Nothing yet. What is not `signed`, a magnitude, has no smallest value worth telling.
+    pub fn new(parts: Option<Revolutions>, signed: bool) -> Self {
         let count = parts.map_or(0, |parts| parts.count());
-        Tally { total: Extremes::default(), revolutions: vec![Extremes::default(); count], parts }
+        let (total, revolutions) = (Extremes::default(), vec![Extremes::default(); count]);
+        Tally { total, revolutions, parts, signed }
+    }
+
+    /// Factors by which to multiply a curve so that each extreme that counts is a maximum.
+    pub(super) fn signs(&self) -> &'static [f64] {
+        if self.signed { &[1.0, -1.0] } else { &[1.0] }
     }
 
     /// Takes a candidate for an extreme value.
@@ -99,12 +107,12 @@ impl Tally {
         if !candidate.value.is_finite() || !candidate.time.is_finite() {
             return;
         }
-        self.total.take(candidate);
+        self.total.take(candidate, self.signed);
         if let Some(parts) = self.parts {
             let [before, after] = parts.touching(candidate.time);
-            self.revolutions[before].take(candidate);
+            self.revolutions[before].take(candidate, self.signed);
             if after != before {
-                self.revolutions[after].take(candidate);
+                self.revolutions[after].take(candidate, self.signed);
             }
         }
     }
@@ -129,7 +137,7 @@ mod tests {
     #[test]
     fn a_value_on_a_boundary_counts_for_both_revolutions() {
         let parts = Revolutions::new(TAU, 2.0, 10);
-        let mut tally = Tally::new(parts);
+        let mut tally = Tally::new(parts, true);
         for (time, value) in [(0.5, 1.0), (1.0, 5.0), (1.5, -2.0)] {
             tally.take(sample(time, value));
         }
@@ -145,11 +153,11 @@ mod tests {
 
     #[test]
     fn what_is_no_number_does_not_count() {
-        let mut tally = Tally::new(None);
+        let mut tally = Tally::new(None, true);
         tally.take(sample(0.0, f64::NAN));
         tally.take(sample(f64::NAN, 1.0));
         tally.take(sample(0.0, f64::INFINITY));
-        assert_eq!(tally, Tally::new(None));
+        assert_eq!(tally, Tally::new(None, true));
     }
 
     #[test]
