@@ -12,7 +12,7 @@ mod schedule;
 mod touching;
 mod window;
 
-pub use kinematic::kinematic;
+pub use kinematic::{Assembled, kinematic};
 pub use recorder::*;
 pub use schedule::Schedule;
 
@@ -394,8 +394,9 @@ where
         Ok(())
     }
 
-    /// Force (N) that the tolerance makes of nothing, where a contact has this slope (N/m).
+    /// Force (N) that the tolerance makes of nothing, where a contact has this slope (N/m): a
+    /// trajectory is off by some tens of times the tolerance of a step.
     fn noise(&mut self, slope: f64) -> f64 {
-        10.0 * self.tolerance * self.engine.system().length() * slope.abs()
+        100.0 * self.tolerance * self.engine.system().length() * slope.abs()
     }
 }
