@@ -18,4 +18,6 @@ pub mod run;
 pub mod record;
 pub mod case;
 pub mod simulate;
+pub mod post;
+pub mod compare;
 pub mod cli;

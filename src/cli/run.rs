@@ -1,6 +1,6 @@
 //! `freeplay run CASE`
 
-use super::{CaseArguments, Failure};
+use super::{CaseArguments, Failure, chain};
 use crate::record::{Ending, Outcome, Writer, utc};
 use crate::run::Progress;
 use crate::simulate::{self, Simulation, Statistics};
@@ -105,17 +105,6 @@ fn ending(statistics: Statistics, failure: Option<String>) -> Ending {
     };
     let Statistics { engine: counts, rulings } = statistics;
     Ending { outcome, counts, rulings, finished_utc: utc(SystemTime::now()) }
-}
-
-/// An error and its causes in one line.
-fn chain(error: &(impl std::error::Error + ?Sized)) -> String {
-    let mut line = error.to_string();
-    let mut cause = error.source();
-    while let Some(error) = cause {
-        line = format!("{line}: {error}");
-        cause = error.source();
-    }
-    line
 }
 
 fn progress_bar(quiet: bool) -> ProgressBar {

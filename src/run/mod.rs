@@ -12,7 +12,7 @@ mod schedule;
 mod touching;
 mod window;
 
-pub use kinematic::kinematic;
+pub use kinematic::{Assembled, kinematic};
 pub use recorder::*;
 pub use schedule::Schedule;
 
