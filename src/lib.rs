@@ -20,4 +20,5 @@ pub mod case;
 pub mod simulate;
 pub mod post;
 pub mod compare;
+pub mod figure;
 pub mod cli;

@@ -3,6 +3,7 @@
 mod check;
 mod compare;
 mod info;
+mod plot;
 mod run;
 mod summary;
 
@@ -31,6 +32,8 @@ enum Command {
     Summary(summary::Arguments),
     /// Say how far a trajectory agrees with a reference, in digits over time.
     Compare(compare::Arguments),
+    /// Draw the figures of result files, as journals print them.
+    Plot(plot::Arguments),
 }
 
 /// A case file, and what the command line changes in it.
@@ -117,6 +120,7 @@ pub fn main() -> ExitCode {
         Command::Info(arguments) => info::info(&arguments),
         Command::Summary(arguments) => summary::summary(&arguments),
         Command::Compare(arguments) => compare::compare(&arguments),
+        Command::Plot(arguments) => plot::plot(&arguments),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,
