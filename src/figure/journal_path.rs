@@ -40,7 +40,7 @@ pub(super) fn in_the_circle(
     let far = points.iter().map(|[x, y]| x.abs().max(y.abs())).filter(|far| far.is_finite());
     let far = far.fold(radial.unwrap_or(0.0), f64::max);
     let far = if far > 0.0 { 1.08 * far } else { 1.0 };
-    marks.extend(radial.map(|radial| Mark::Circle(radial, Stroke::dashed(BLACK, 0.6))));
+    marks.extend(radial.map(|radial| Mark::Circle(radial, Stroke::solid(BLACK, 0.6))));
     let axis = |letter: &str| Axis {
         title: Text::roman("Δ").and_italic(letter),
         unit: Unit::fitting("m", far),

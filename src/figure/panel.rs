@@ -1,7 +1,8 @@
 //! One panel of a figure: a frame, two axes, and what is drawn between them.
 
 use super::decimate::{Point, by_columns, by_distance};
-use super::palette::{BLACK, FRAME};
+use super::ink::without_covered;
+use super::palette::FRAME;
 use super::quantity::Unit;
 use super::svg::{Anchor, Stroke, Svg};
 use super::text::Text;
@@ -54,6 +55,14 @@ impl Axis {
         self.unit.behind(self.title.clone())
     }
 
+    /// An axis of round numbers with room for all values, in the unit that suits them. `unit` is
+    /// written as in result files.
+    pub fn fitting(title: Text, unit: &str, values: impl IntoIterator<Item = f64>) -> Self {
+        let range = with_room(range_of(values));
+        let unit = Unit::fitting(unit, range[0].abs().max(range[1].abs()));
+        Axis { title, unit, range, ticks: Choice::Decimal }
+    }
+
     /// Ticks that suit a length on the page (pt), `spacing` apart at least.
     pub fn ticks(&self, length: f64, spacing: f64) -> Ticks {
         let range = self.range.map(|end| end / self.unit.size);
@@ -85,6 +94,17 @@ pub(super) enum Mark {
     Upright(f64, Stroke),
 }
 
+impl Mark {
+    /// Values on the vertical axis of a curve or a level.
+    pub fn heights(&self) -> Vec<f64> {
+        match self {
+            Mark::Curve(points, _) => points.iter().map(|point| point[1]).collect(),
+            Mark::Level(height, _) => vec![*height],
+            _ => Vec::new(),
+        }
+    }
+}
+
 /// How a point is drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Dot {
@@ -99,8 +119,6 @@ pub(super) struct Dot {
 pub(super) enum Sample {
     /// A line.
     Line(Stroke),
-    /// A point.
-    Dot(Dot),
     /// A bar.
     Bar(&'static str),
 }
@@ -142,8 +160,15 @@ pub(super) struct Words {
 
 /// Distances of major ticks that leave room for labels: across and down (pt).
 const SPACING: [f64; 2] = [38.0, 19.0];
+/// The same where both axes are alike (pt).
+const EQUAL_SPACING: f64 = 30.0;
 
 impl Panel {
+    fn spacing(&self) -> [f64; 2] {
+        let alike = self.x.range == self.y.range && self.x.unit == self.y.unit;
+        if alike { [EQUAL_SPACING; 2] } else { SPACING }
+    }
+
     /// Width of the vertical axis' labels for a frame of this height (pt).
     pub fn label_width(&self, height: f64) -> f64 {
         let widest = |labels: &[String]| {
@@ -152,7 +177,7 @@ impl Panel {
         };
         match &self.y.ticks {
             Choice::Names(names) => widest(names),
-            _ => widest(&self.y.ticks(height, SPACING[1]).labels),
+            _ => widest(&self.y.ticks(height, self.spacing()[1]).labels),
         }
     }
 
@@ -182,7 +207,7 @@ impl Panel {
     }
 
     fn draw_x(&self, svg: &mut Svg, frame: Frame, words: Words) {
-        let ticks = self.x.ticks(frame.size[0], SPACING[0]);
+        let ticks = self.x.ticks(frame.size[0], self.spacing()[0]);
         let [top, bottom] = [frame.corner[1], frame.corner[1] + frame.size[1]];
         let place = |tick: &f64| self.across(frame, tick * self.x.unit.size);
         let both = |places: &[f64], length: f64| -> Vec<[Point; 2]> {
@@ -213,7 +238,7 @@ impl Panel {
             }
             return;
         }
-        let ticks = self.y.ticks(frame.size[1], SPACING[1]);
+        let ticks = self.y.ticks(frame.size[1], self.spacing()[1]);
         let place = |tick: &f64| self.down(frame, tick * self.y.unit.size);
         for (tick, words) in ticks.major.iter().zip(&ticks.labels) {
             label(place(tick), words);
@@ -239,7 +264,8 @@ impl Panel {
                 svg.path(&by_distance(&columns, TOLERANCE), stroke);
             }
             Mark::Path(points, stroke) => {
-                svg.path(&by_distance(&placed(points), TOLERANCE), stroke);
+                let path = by_distance(&placed(points), TOLERANCE);
+                svg.path(&without_covered(path, stroke.width), stroke);
             }
             Mark::Dots(points, dot) => {
                 let finite = placed(points).into_iter().filter(|[x, y]| (x + y).is_finite());
@@ -306,7 +332,6 @@ impl Panel {
             let to = from + SAMPLE;
             match sample {
                 Sample::Line(stroke) => svg.lines([[[from, y], [to, y]]], stroke),
-                Sample::Dot(dot) => svg.discs([[0.5 * (from + to), y]], dot.radius, dot.colour),
                 Sample::Bar(colour) => {
                     svg.rectangles([[[from, y - 2.5], [to, y + 2.5]]], colour);
                 }
@@ -356,9 +381,4 @@ pub(super) fn with_room(range: Option<[f64; 2]>) -> [f64; 2] {
     }
     let room = 0.05 * (high - low);
     [if low == 0.0 { 0.0 } else { low - room }, if high == 0.0 { 0.0 } else { high + room }]
-}
-
-/// A stroke's colour is black by default.
-pub(super) const fn thin_black() -> Stroke {
-    Stroke::solid(BLACK, 0.5)
 }
