@@ -3,7 +3,7 @@
 use super::decimate::{BREAK, Point};
 use super::grid::by_run_and_joint;
 use super::palette::{SKY, VERMILLION};
-use super::panel::{Axis, Mark, Panel, zero_line};
+use super::panel::{Axis, Mark, Panel, Sample, zero_line};
 use super::runs::{Run, Runs};
 use super::svg::Stroke;
 use super::text::Text;
@@ -17,10 +17,15 @@ const HARDEST: Stroke = Stroke::solid(VERMILLION, 0.9);
 
 /// Draws one figure with a panel for each joint of each run.
 pub(super) fn draw(runs: &Runs, figures: &mut Figures<'_>) -> Result<(), Error> {
-    let sheets = by_run_and_joint(runs, 0.8, |run, joint, index| {
+    let mut sheets = by_run_and_joint(runs, 0.8, |run, joint, index| {
         let loops = loops(run, index)?;
         Ok((!loops.is_empty()).then(|| panel(run, joint, &loops)))
     })?;
+    for sheet in &mut sheets {
+        if let Some(first) = sheet.rows.iter_mut().flatten().flatten().next() {
+            first.legend = vec![(Sample::Line(HARDEST), Text::roman("hardest"))];
+        }
+    }
     let title = "Normal force over penetration in each contact, the hardest drawn thicker";
     figures.add("contact-loops", None, title, sheets);
     Ok(())

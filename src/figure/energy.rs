@@ -10,8 +10,8 @@ use super::{Error, Figures};
 
 /// The parts of the balance: dataset, words, stroke.
 const PARTS: [(&str, &str, Stroke); 6] = [
-    ("energy_kinetic", "kinetic", Stroke::solid(BLUE, 0.7)),
-    ("energy_potential", "potential", Stroke::solid(GREEN, 0.9)),
+    ("energy_kinetic", "kinetic", Stroke::solid(BLUE, 0.6)),
+    ("energy_potential", "potential", Stroke::solid(GREEN, 1.1)),
     ("energy_elastic", "elastic", Stroke::solid(ORANGE, 0.5)),
     ("energy_dissipated", "dissipated", Stroke::solid(VERMILLION, 1.2)),
     ("drive_work", "drive work", Stroke::dashed(BLACK, 0.8)),

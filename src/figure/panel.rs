@@ -170,15 +170,16 @@ impl Panel {
     }
 
     /// Width of the vertical axis' labels for a frame of this height (pt).
-    pub fn label_width(&self, height: f64) -> f64 {
-        let widest = |labels: &[String]| {
-            let widths = labels.iter().map(|label| Text::roman(label).width(SMALL_TYPE));
-            widths.fold(0.0, f64::max)
-        };
+    pub fn y_label_width(&self, height: f64) -> f64 {
         match &self.y.ticks {
             Choice::Names(names) => widest(names),
             _ => widest(&self.y.ticks(height, self.spacing()[1]).labels),
         }
+    }
+
+    /// Width of the horizontal axis' labels for a frame of this width (pt).
+    pub fn x_label_width(&self, width: f64) -> f64 {
+        widest(&self.x.ticks(width, self.spacing()[0]).labels)
     }
 
     /// Width of the legend (pt).
@@ -347,6 +348,11 @@ impl Panel {
     }
 }
 
+/// Width of the widest label (pt).
+fn widest(labels: &[String]) -> f64 {
+    labels.iter().map(|label| Text::roman(label).width(SMALL_TYPE)).fold(0.0, f64::max)
+}
+
 /// Length of a line beside the words of a legend (pt).
 const SAMPLE: f64 = 15.0;
 /// Distance of the words from it (pt).
@@ -371,13 +377,20 @@ pub(super) fn range_of(values: impl IntoIterator<Item = f64>) -> Option<[f64; 2]
     })
 }
 
-/// A range with room about it, a twentieth of it each side; an end at zero stays there, and a
-/// range without width gets some.
+/// Least width of an axis that shows more than the last digits of its values, in units of these.
+const LEAST_SPAN: f64 = 0.01;
+
+/// A range with room about it, a twentieth of it each side; an end at zero stays there, and a range
+/// so narrow that only digits far behind the point would tell its ends apart is widened.
 pub(super) fn with_room(range: Option<[f64; 2]>) -> [f64; 2] {
     let [low, high] = range.unwrap_or([0.0, 1.0]);
-    if high - low <= 1e-12 * low.abs().max(high.abs()) {
-        let room = if low == 0.0 { 1.0 } else { 0.1 * low.abs() };
-        return if low == 0.0 { [0.0, 1.0] } else { [low - room, high + room] };
+    let largest = low.abs().max(high.abs());
+    if largest == 0.0 {
+        return [0.0, 1.0];
+    }
+    if high - low < LEAST_SPAN * largest {
+        let middle = 0.5 * (low + high);
+        return [middle - 0.5 * LEAST_SPAN * largest, middle + 0.5 * LEAST_SPAN * largest];
     }
     let room = 0.05 * (high - low);
     [if low == 0.0 { 0.0 } else { low - room }, if high == 0.0 { 0.0 } else { high + room }]

@@ -11,8 +11,8 @@ pub const DOUBLE_COLUMN: f64 = 190.0;
 
 /// Margin of the page on every side (pt).
 const MARGIN: f64 = 2.0;
-/// Room right of a frame, for half a label of the horizontal axis (pt).
-const RIGHT: f64 = 9.0;
+/// Least room right of a frame (pt).
+const RIGHT: f64 = 6.0;
 /// Line of words over a frame (pt).
 const HEADER: f64 = 12.0;
 /// Distance of a header's words from the frame (pt).
@@ -54,6 +54,8 @@ pub(super) enum Height {
 struct Layout {
     /// Room left of each column's frames.
     left: Vec<f64>,
+    /// Room right of all frames, for half a label of the horizontal axis.
+    right: f64,
     /// Width of all frames.
     frame: f64,
     /// Height of each row's frames.
@@ -100,7 +102,7 @@ impl Sheet {
                 let legend = if layout.headers[row] > 1 { line - HEADER } else { line };
                 panel.draw_legend(svg, [x + layout.frame, legend]);
             }
-            x += layout.frame + RIGHT;
+            x += layout.frame + layout.right;
         }
     }
 
@@ -120,9 +122,11 @@ impl Sheet {
         let guessed = heights(guess);
         let left: Vec<f64> =
             (0..columns).map(|column| self.room_left_of(column, &guessed)).collect();
-        let frame = (width - left.iter().sum::<f64>()) / columns.max(1) as f64 - RIGHT;
+        let panels = self.rows.iter().flatten().flatten();
+        let right = panels.map(|panel| 0.5 * panel.x_label_width(guess)).fold(RIGHT, f64::max);
+        let frame = (width - left.iter().sum::<f64>()) / columns.max(1) as f64 - right;
         let headers = self.rows.iter().map(|row| header_lines(row, frame)).collect();
-        Layout { left, frame, heights: heights(frame), headers }
+        Layout { left, right, frame, heights: heights(frame), headers }
     }
 
     fn columns(&self) -> usize {
@@ -138,7 +142,7 @@ impl Sheet {
             let panel = self.panel(row, column)?;
             let titled = self.words(row, column).y_title || self.common_title().is_some();
             let title = if titled { Y_TITLE } else { 0.0 };
-            Some(panel.label_width(heights[row]) + LABEL_GAP + title)
+            Some(panel.y_label_width(heights[row]) + LABEL_GAP + title)
         };
         (0..self.rows.len()).filter_map(room).fold(0.0, f64::max)
     }

@@ -15,10 +15,14 @@ use crate::run::{Contact, EventKind, Peak};
 /// Samples within a contact below which its course between them is unknown.
 const KNOWN: usize = 3;
 /// Steps in which a contact's depth is passed at its largest rate, at least.
-const STEPS_OF_DEPTH: f64 = 40.0;
+const STEPS_OF_DEPTH: f64 = 16.0;
 /// Steps in which the radial clearance is passed in flight, at least.
 const STEPS_OF_CLEARANCE: f64 = 60.0;
-/// Most states between two samples.
+/// Share of a step within which states are close enough.
+const ALREADY_CLOSE: f64 = 0.3;
+/// Fewest parts into which the time between two states is cut, where it is cut.
+const FEWEST: f64 = 8.0;
+/// Most of them.
 const MOST: f64 = 32.0;
 
 /// State of a clearance at one time.
@@ -47,21 +51,12 @@ pub(super) fn contacts(run: &Run, clearance: usize) -> Vec<Contact> {
     contacts
 }
 
-/// Normal force (N) over the horizontal axis: samples, zero at both ends of each contact, and every
-/// local maximum.
+/// Normal force (N) over the horizontal axis, with every local maximum.
 pub(super) fn normal_force(run: &Run, clearance: usize) -> Result<Vec<Point>, Error> {
-    let forces = run.samples("normal_force")?.column(clearance);
-    let mut points: Vec<Point> =
-        run.times.iter().copied().zip(forces).map(|(time, force)| [time, force]).collect();
-    for contact in contacts(run, clearance) {
-        if !began_before(run, &contact) {
-            points.push([contact.begin, 0.0]);
-        }
-        points.push([contact.end, 0.0]);
-        points.push([contact.peak_time, contact.peak_force]);
-    }
-    points.extend(peaks(run, clearance).map(|peak| [peak.time, peak.force]));
-    points.retain(|[time, _]| run.shows(*time));
+    let history = history(run, clearance)?;
+    let mut points: Vec<Point> = history.iter().map(|moment| [moment.time, moment.force]).collect();
+    let peaks = peaks(run, clearance).filter(|peak| run.shows(peak.time));
+    points.extend(peaks.map(|peak| [peak.time, peak.force]));
     points.sort_by(|a, b| a[0].total_cmp(&b[0]));
     Ok(points.into_iter().map(|[time, force]| [run.place(time), force]).collect())
 }
@@ -157,7 +152,8 @@ fn outline(contact: &Contact, begin: Moment, end: Moment) -> [Moment; 3] {
     [begin, Moment { time, depth, rate: 0.0, force }, end]
 }
 
-/// Puts states between others, so many that none is farther than `step` (m) from the next.
+/// Puts states between others, so many that none is farther than `step` (m) from the next, and
+/// eight at least where the path turns.
 fn smooth(states: &[Moment], radial: f64, step: f64, peaks: &[Point]) -> Vec<Moment> {
     let force = Monotone::through(states, peaks);
     let mut moments = Vec::with_capacity(states.len());
@@ -165,11 +161,10 @@ fn smooth(states: &[Moment], radial: f64, step: f64, peaks: &[Point]) -> Vec<Mom
         let [from, to] = [pair[0], pair[1]];
         moments.push(from);
         let way = from.rate.abs().max(to.rate.abs()) * (to.time - from.time);
-        let parts = (way / step).ceil();
-        if !(parts >= 2.0) {
+        if !(way > ALREADY_CLOSE * step) {
             continue;
         }
-        let parts = parts.min(MOST) as usize;
+        let parts = (way / step).clamp(FEWEST, MOST) as usize;
         let part = (to.time - from.time) / parts as f64;
         let even = (1..parts).map(|k| from.time + part * k as f64);
         let tips = peaks.iter().map(|peak| peak[0]);
@@ -203,14 +198,17 @@ fn between([from, to]: [Moment; 2], radial: f64, time: f64) -> (f64, f64) {
 
 /// A known value of a cubic, and its slope there.
 #[derive(Debug, Clone, Copy)]
-struct Knot {
-    time: f64,
-    value: f64,
-    slope: f64,
+pub(super) struct Knot {
+    /// Where it is (s).
+    pub time: f64,
+    /// The value.
+    pub value: f64,
+    /// The slope (1/s).
+    pub slope: f64,
 }
 
 /// Value and slope of the cubic through two knots.
-fn cubic([from, to]: [Knot; 2], time: f64) -> (f64, f64) {
+pub(super) fn cubic([from, to]: [Knot; 2], time: f64) -> (f64, f64) {
     let span = to.time - from.time;
     let s = (time - from.time) / span;
     let rise = to.value - from.value;
