@@ -5,7 +5,7 @@ use super::over_time::{Curve, column, time_axis};
 use super::palette::{BLACK, BLUE};
 use super::panel::{Axis, Choice, Mark, Panel, Sample, range_of};
 use super::quantity::Unit;
-use super::runs::{Run, Runs};
+use super::runs::Runs;
 use super::svg::Stroke;
 use super::text::Text;
 use super::{Error, Figures};

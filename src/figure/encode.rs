@@ -6,7 +6,7 @@ use krilla::geom::Size;
 use krilla::metadata::Metadata;
 use krilla::page::PageSettings;
 use krilla_svg::{SurfaceExt, SvgSettings};
-use resvg::tiny_skia::{Pixmap, Transform};
+use resvg::tiny_skia::{Color, Pixmap, Transform};
 use resvg::usvg::{Options, Tree};
 
 /// Dots per inch of PNG files.
@@ -55,6 +55,7 @@ pub(super) fn png(svg: &str) -> Result<Vec<u8>, EncodeError> {
     let [width, height] =
         [tree.size().width(), tree.size().height()].map(|side| (side * scale).round() as u32);
     let mut pixels = Pixmap::new(width, height).ok_or(EncodeError::Size { width, height })?;
+    pixels.fill(Color::WHITE);
     resvg::render(&tree, Transform::from_scale(scale, scale), &mut pixels.as_mut());
     let opaque: Vec<u8> =
         pixels.data().chunks(4).flat_map(|pixel| [pixel[0], pixel[1], pixel[2]]).collect();

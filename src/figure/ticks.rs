@@ -57,11 +57,6 @@ impl Ticks {
         Ticks::every(range, |k| step * k, step, (step / minor).round()).labelled(0)
     }
 
-    /// A tick without label at each of these places.
-    pub fn bare(major: Vec<f64>) -> Self {
-        Ticks { labels: vec![String::new(); major.len()], major, minor: Vec::new() }
-    }
-
     fn every(range: [f64; 2], tick: impl Fn(f64) -> f64, step: f64, parts: f64) -> Self {
         let ticks = |step: f64, tick: &dyn Fn(f64) -> f64| -> Vec<f64> {
             let (first, last) = whole(range, step);
