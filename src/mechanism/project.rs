@@ -64,9 +64,9 @@ impl<S: Scalar> Mechanism<S> {
     fn correct(&mut self, x: &mut [S]) -> Result<(), Fault> {
         self.factor().map_err(|singular| self.singular(singular))?;
         linear::solve_symmetric(&self.now.matrix, self.layout.rows, &mut self.now.lambda);
-        for row in &self.layout.constraints {
+        for (row, arms) in self.layout.constraints.iter().zip(&self.now.arms) {
             let lambda = &self.now.lambda[row.first..row.first + row.constraint.rows()];
-            let on = row.constraint.wrenches(&self.now.poses, lambda);
+            let on = row.constraint.wrenches(arms, lambda);
             for (body, wrench) in row.constraint.bodies().into_iter().zip(on) {
                 let super::layout::Role::Free(at) = self.layout.roles[body] else { continue };
                 let change = [wrench.force.x, wrench.force.y, wrench.moment];
