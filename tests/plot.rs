@@ -1,5 +1,6 @@
 //! `freeplay plot` as a user meets it, and figures of files that no simulation would make.
 
+#[expect(dead_code, reason = "what a file must hold is tested beside the reader")]
 mod recorded;
 
 use freeplay::figure::{Error, Format, Options, Over, draw};
@@ -115,7 +116,7 @@ fn bad_input_ends_with_2_and_a_bad_output_with_3() {
         (&file, &["--drive", "crank"], "it has no drive \"crank\""),
         (&file, &["--from", "1"], "has no samples from 1 s"),
         (&file, &["--format", "bmp"], "bmp"),
-        (&file, &["--width", "-3"], "number from 40 to 1000"),
+        (&file, &["--width", "3"], "number from 40 to 1000"),
         (&file, &["--section", "NaN"], "must be a number"),
     ] {
         let refused = plot(&[file.as_path()], &figures, more);

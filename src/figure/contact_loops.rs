@@ -39,7 +39,7 @@ fn loops(run: &Run, clearance: usize) -> Result<Vec<Vec<Point>>, Error> {
         let end = if contact.end.is_nan() { f64::INFINITY } else { contact.end };
         let from = moments.partition_point(|moment| moment.time < contact.begin);
         let until = moments.partition_point(|moment| moment.time <= end);
-        moments[from..until].iter().map(|moment| [moment.depth, moment.force]).collect()
+        moments[from..until.max(from)].iter().map(|moment| [moment.depth, moment.force]).collect()
     };
     let contacts = contacts(run, clearance).into_iter();
     let comes_or_goes = |contact: &Contact| run.shows(contact.end) || !began_before(run, contact);
