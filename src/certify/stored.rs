@@ -38,8 +38,11 @@ pub enum NotAReference {
     },
 }
 
-/// What the file says of a sample, as it is named there.
-const CLAIMS: [(&str, &str, fn(&Claim) -> f64); 6] = [
+/// Name and `long_name` of a dataset, and its value for a sample.
+type Column = (&'static str, &'static str, fn(&Claim) -> f64);
+
+/// What the file says of a sample.
+const CLAIMS: [Column; 6] = [
     ("reference_digits", "digits of the state to which this reference is certified", |c| {
         c.reference.state
     }),
