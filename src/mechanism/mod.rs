@@ -12,6 +12,7 @@ mod start;
 mod system;
 
 pub use observation::*;
+pub use project::OpenJoint;
 pub use system::{ContactRates, SingularPosition};
 
 use crate::clearance::{Clearance, ContactForce, EventSlot, Gap, GapRates, Mode};
