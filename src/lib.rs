@@ -19,4 +19,5 @@ pub mod record;
 pub mod case;
 pub mod simulate;
 pub mod post;
+pub mod export;
 pub mod cli;

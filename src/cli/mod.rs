@@ -1,6 +1,7 @@
 //! The command line, one file a command.
 
 mod check;
+mod export;
 mod info;
 mod run;
 mod summary;
@@ -28,6 +29,8 @@ enum Command {
     Info(info::Arguments),
     /// Say what a result file shows: peaks, ratios to the ideal mechanism, contacts, energies.
     Summary(summary::Arguments),
+    /// Write a result file for other tools: CSV, Parquet, OpenMBV.
+    Export(export::Arguments),
 }
 
 /// A case file, and what the command line changes in it.
@@ -113,6 +116,7 @@ pub fn main() -> ExitCode {
         Command::Check(arguments) => check::check(&arguments),
         Command::Info(arguments) => info::info(&arguments),
         Command::Summary(arguments) => summary::summary(&arguments),
+        Command::Export(arguments) => export::export(&arguments),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,
