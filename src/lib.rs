@@ -20,4 +20,6 @@ pub mod case;
 pub mod simulate;
 pub mod post;
 pub mod export;
+pub mod compare;
+pub mod figure;
 pub mod cli;

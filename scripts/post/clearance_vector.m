@@ -7,7 +7,7 @@ function clearance_vector (path, joint, picture)
   axis ('equal');
   xlabel ('x (mm)');
   ylabel ('y (mm)');
-  title ([run.title ': journal centre in joint ' joint]);
+  title (['Journal centre in joint ' joint]);
   print (drawing, picture);
   fprintf ('%s: largest eccentricity %.17g m\n', joint, max (run.eccentricity(:, k)));
 end

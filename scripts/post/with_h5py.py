@@ -10,12 +10,11 @@ with h5py.File(path) as run:
     k = run["clearance"].attrs["flag_meanings"].decode().split().index(joint)
     x, y = run["clearance_x"][:, k], run["clearance_y"][:, k]
     largest = run["eccentricity"][:, k].max()
-    title = run.attrs["title"].decode()
 
 plt.plot(x * 1e3, y * 1e3, linewidth=0.5)
 plt.axis("equal")
 plt.xlabel("x (mm)")
 plt.ylabel("y (mm)")
-plt.title(f"{title}: journal centre in joint {joint}")
+plt.title(f"Journal centre in joint {joint}")
 plt.savefig(picture)
 print(f"{joint}: largest eccentricity {float(largest)!r} m")

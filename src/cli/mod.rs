@@ -1,8 +1,10 @@
 //! The command line, one file a command.
 
 mod check;
+mod compare;
 mod export;
 mod info;
+mod plot;
 mod run;
 mod summary;
 
@@ -29,6 +31,10 @@ enum Command {
     Info(info::Arguments),
     /// Say what a result file shows: peaks, ratios to the ideal mechanism, contacts, energies.
     Summary(summary::Arguments),
+    /// Say how far a trajectory agrees with a reference, in digits over time.
+    Compare(compare::Arguments),
+    /// Draw the figures of result files, as journals print them.
+    Plot(plot::Arguments),
     /// Write a result file for other tools: CSV, Parquet, OpenMBV.
     Export(export::Arguments),
 }
@@ -116,6 +122,8 @@ pub fn main() -> ExitCode {
         Command::Check(arguments) => check::check(&arguments),
         Command::Info(arguments) => info::info(&arguments),
         Command::Summary(arguments) => summary::summary(&arguments),
+        Command::Compare(arguments) => compare::compare(&arguments),
+        Command::Plot(arguments) => plot::plot(&arguments),
         Command::Export(arguments) => export::export(&arguments),
     };
     match done {

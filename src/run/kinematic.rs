@@ -61,6 +61,7 @@ pub fn kinematic<S: Scalar, R: Recorder>(
             }
         }
         let observation = mechanism.observe(schedule.time(k), &now.integrals);
+        progress.samples += 1;
         recorder.sample(&observation).map_err(Error::Recorder)?;
     }
     let _ = watch(&progress);
