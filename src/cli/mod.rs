@@ -3,6 +3,7 @@
 mod certify;
 mod check;
 mod compare;
+mod export;
 mod info;
 mod plot;
 mod run;
@@ -39,6 +40,8 @@ enum Command {
     Compare(compare::Arguments),
     /// Draw the figures of result files, as journals print them.
     Plot(plot::Arguments),
+    /// Write a result file for other tools: CSV, Parquet, OpenMBV.
+    Export(export::Arguments),
 }
 
 /// A case file, and what the command line changes in it.
@@ -135,6 +138,7 @@ pub fn main() -> ExitCode {
         Command::Summary(arguments) => summary::summary(&arguments),
         Command::Compare(arguments) => compare::compare(&arguments),
         Command::Plot(arguments) => plot::plot(&arguments),
+        Command::Export(arguments) => export::export(&arguments),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,
