@@ -18,4 +18,5 @@ pub mod run;
 pub mod record;
 pub mod case;
 pub mod simulate;
+pub mod report;
 pub mod cli;

@@ -2,6 +2,7 @@
 
 mod check;
 mod info;
+mod report;
 mod run;
 
 use clap::{Args, Parser, Subcommand};
@@ -25,6 +26,8 @@ enum Command {
     Check(check::Arguments),
     /// Say what a result file holds and how it was made.
     Info(info::Arguments),
+    /// Write a page on one or several runs: summary, charts, the mechanism in motion.
+    Report(report::Arguments),
 }
 
 /// A case file, and what the command line changes in it.
@@ -98,6 +101,7 @@ pub fn main() -> ExitCode {
         Command::Run(arguments) => run::run(&arguments),
         Command::Check(arguments) => check::check(&arguments),
         Command::Info(arguments) => info::info(&arguments),
+        Command::Report(arguments) => report::report(&arguments),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

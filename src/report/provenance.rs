@@ -1,0 +1,142 @@
+//! What was run, and how: the tables at the end of the page.
+
+use super::html::escape;
+use super::number::{milliseconds, significant};
+use super::run::Run;
+use super::tables::Matrix;
+use crate::model::Model;
+use crate::record::Attribute;
+
+/// Attributes told as they are, with the name they get on the page.
+const TOLD: [(&str, &str); 13] = [
+    ("engine", "engine"),
+    ("relative_tolerance", "relative tolerance"),
+    ("absolute_tolerance", "absolute tolerance"),
+    ("initial_step", "initial step (s)"),
+    ("max_step", "longest step (s)"),
+    ("norm", "norm of the error"),
+    ("solver_steps", "steps taken"),
+    ("source", "made by"),
+    ("sundials_version", "SUNDIALS"),
+    ("hdf5_version", "HDF5"),
+    ("started_utc", "started"),
+    ("finished_utc", "finished"),
+    ("case_sha256", "SHA-256 of the case"),
+];
+
+/// What was run: a column a run.
+pub(super) fn what_was_run(runs: &[Run<'_>], samples_in_page: &[usize]) -> String {
+    let mut table = Matrix::new(runs.iter().map(|run| run.label.as_str()));
+    let text = |name| move |run: &Run<'_>| escape(run.file.text(name).unwrap_or("–"));
+    table.row("title", runs.iter().map(text("title")));
+    let file = |run: &Run<'_>| run.file.path().file_name().map(|n| n.to_string_lossy().into());
+    table.row("file", runs.iter().map(|run| escape(&file(run).unwrap_or_else(String::new))));
+    let outcome = |run: &Run<'_>| match run.failure() {
+        None => "complete".to_owned(),
+        Some(failure) => format!("<strong class=\"failure\">{}</strong>", escape(&failure)),
+    };
+    table.row("outcome", runs.iter().map(outcome));
+    table.row("simulated time (ms)", runs.iter().map(span));
+    let samples = runs.iter().zip(samples_in_page).map(|(run, shown)| samples(run, *shown));
+    table.row("samples", samples);
+    let clearances = runs.iter().map(clearances);
+    table.row("clearances", clearances);
+    table.row("rulings", runs.iter().map(rulings));
+    for (attribute, name) in TOLD {
+        if runs.iter().any(|run| run.file.attribute(attribute).is_some()) {
+            table.row(name, runs.iter().map(|run| told(run, attribute)));
+        }
+    }
+    table.finish("provenance")
+}
+
+fn told(run: &Run<'_>, attribute: &str) -> String {
+    match run.file.attribute(attribute) {
+        None => "–".to_owned(),
+        Some(Attribute::Number(value)) => escape(&format!("{value:e}")),
+        Some(other) if attribute == "case_sha256" => {
+            format!("<code class=\"long\">{}</code>", escape(&other.to_string()))
+        }
+        Some(other) => escape(&other.to_string()),
+    }
+}
+
+fn span(run: &Run<'_>) -> String {
+    match run.times.first().zip(run.times.last()) {
+        Some((first, last)) => format!("{} to {}", milliseconds(*first), milliseconds(*last)),
+        None => "no samples".to_owned(),
+    }
+}
+
+fn samples(run: &Run<'_>, shown: usize) -> String {
+    let all = run.times.len();
+    if shown == all {
+        return all.to_string();
+    }
+    format!("{all}, of which the page draws {shown}: the extremes of each stretch, true rows all")
+}
+
+/// Sizes and laws of the clearances, with the stiffness that the case comes to.
+fn clearances(run: &Run<'_>) -> String {
+    let Some(case) = &run.case else {
+        return escape(&run.file.clearances().join(", "));
+    };
+    let Ok(model) = Model::<f64>::new(&case.description) else {
+        return escape(&run.file.clearances().join(", "));
+    };
+    let lines: Vec<String> = model
+        .names()
+        .clearances
+        .iter()
+        .zip(model.clearances())
+        .map(|(name, clearance)| {
+            let law = &clearance.normal;
+            let friction = if clearance.friction.is_some() { "with" } else { "no" };
+            format!(
+                "<b>{}</b>: c = {} mm in a bearing of {} mm; K = {} N/m<sup>{}</sup>, damping \
+                 weight {}, {friction} friction",
+                escape(name),
+                significant(clearance.radial * 1e3, 4),
+                significant(clearance.bearing_radius * 1e3, 4),
+                significant(law.stiffness(), 6),
+                law.exponent(),
+                significant(law.damping_weight(), 4),
+            )
+        })
+        .collect();
+    if lines.is_empty() { "none: ideal joints".to_owned() } else { lines.join("<br>") }
+}
+
+/// The rulings, and how often each was applied.
+fn rulings(run: &Run<'_>) -> String {
+    let named = run.file.attributes().iter().filter_map(|(name, value)| {
+        let name = name.strip_prefix("ruling_")?.replace('_', " ");
+        Some(format!("{} = {}", escape(&name), escape(&value.to_string())))
+    });
+    let lines: Vec<String> = named.collect();
+    if lines.is_empty() { "–".to_owned() } else { lines.join("<br>") }
+}
+
+/// Every attribute and the case's text, folded away.
+pub(super) fn everything(runs: &[Run<'_>]) -> String {
+    runs.iter().map(everything_of).collect()
+}
+
+fn everything_of(run: &Run<'_>) -> String {
+    let hidden = ["case_toml", "Conventions"];
+    let attributes = run.file.attributes().iter();
+    let rows: String = attributes
+        .filter(|(name, _)| !hidden.contains(&name.as_str()))
+        .map(|(name, value)| {
+            let value = escape(&value.to_string());
+            format!("<tr><th scope=\"row\"><code>{}</code></th><td>{value}</td></tr>", escape(name))
+        })
+        .collect();
+    format!(
+        "<details><summary>{label}: the case file as run, and every attribute of the result \
+         file</summary><pre tabindex=\"0\">{case}</pre><div class=\"scroll\">\
+         <table class=\"attributes\"><tbody>{rows}</tbody></table></div></details>",
+        label = escape(&run.label),
+        case = escape(run.file.text("case_toml").unwrap_or_default()),
+    )
+}
