@@ -84,37 +84,65 @@ fn clearances(run: &Run<'_>) -> String {
     let Ok(model) = Model::<f64>::new(&case.description) else {
         return escape(&run.file.clearances().join(", "));
     };
-    let lines: Vec<String> = model
-        .names()
-        .clearances
-        .iter()
-        .zip(model.clearances())
-        .map(|(name, clearance)| {
-            let law = &clearance.normal;
-            let friction = if clearance.friction.is_some() { "with" } else { "no" };
-            format!(
-                "<b>{}</b>: c = {} mm in a bearing of {} mm; K = {} N/m<sup>{}</sup>, damping \
-                 weight {}, {friction} friction",
-                escape(name),
-                significant(clearance.radial * 1e3, 4),
-                significant(clearance.bearing_radius * 1e3, 4),
-                significant(law.stiffness(), 6),
-                law.exponent(),
-                significant(law.damping_weight(), 4),
-            )
-        })
-        .collect();
+    let clearances = model.names().clearances.iter().zip(model.clearances());
+    let described = clearances.map(|(name, clearance)| {
+        let law = &clearance.normal;
+        let friction = if clearance.friction.is_some() { "with" } else { "no" };
+        let description = format!(
+            "c = {} mm in a bearing of {} mm, K = {} N/m<sup>{}</sup>, damping weight {}, \
+             {friction} friction",
+            significant(clearance.radial * 1e3, 4),
+            significant(clearance.bearing_radius * 1e3, 4),
+            significant(law.stiffness(), 6),
+            law.exponent(),
+            significant(law.damping_weight(), 4),
+        );
+        (name.as_str(), description)
+    });
+    let lines = grouped(described);
     if lines.is_empty() { "none: ideal joints".to_owned() } else { lines.join("<br>") }
 }
 
-/// The rulings, and how often each was applied.
+/// The rulings of each clearance, and how often each was applied.
 fn rulings(run: &Run<'_>) -> String {
-    let named = run.file.attributes().iter().filter_map(|(name, value)| {
-        let name = name.strip_prefix("ruling_")?.replace('_', " ");
-        Some(format!("{} = {}", escape(&name), escape(&value.to_string())))
+    let all: Vec<(&str, String)> = run
+        .file
+        .attributes()
+        .iter()
+        .filter_map(|(name, value)| Some((name.strip_prefix("ruling_")?, value.to_string())))
+        .collect();
+    let words = |name: &str| escape(&name.replace('_', " "));
+    let of_clearance = |clearance: &String| {
+        let own = all.iter().filter_map(|(name, value)| {
+            let ruling = name.strip_suffix(clearance.as_str())?.strip_suffix('_')?;
+            Some(format!("{} = {}", words(ruling), escape(value)))
+        });
+        own.collect::<Vec<_>>().join(", ")
+    };
+    let clearances = run.file.clearances().iter();
+    let mut lines = grouped(clearances.map(|name| (name.as_str(), of_clearance(name))));
+    let counts = all.iter().filter_map(|(name, value)| {
+        Some(format!("{} {} times", words(name.strip_suffix("_count")?), escape(value)))
     });
-    let lines: Vec<String> = named.collect();
+    let counts: Vec<String> = counts.collect();
+    if !counts.is_empty() && !run.file.clearances().is_empty() {
+        lines.push(format!("applied: {}", counts.join(", ")));
+    }
     if lines.is_empty() { "–".to_owned() } else { lines.join("<br>") }
+}
+
+/// Descriptions (HTML), each with the names that it holds for.
+fn grouped<'n>(described: impl Iterator<Item = (&'n str, String)>) -> Vec<String> {
+    let mut groups: Vec<(Vec<String>, String)> = Vec::new();
+    for (name, description) in described {
+        match groups.iter_mut().find(|(_, known)| *known == description) {
+            Some((names, _)) => names.push(escape(name)),
+            None => groups.push((vec![escape(name)], description)),
+        }
+    }
+    let line =
+        |(names, text): (Vec<String>, String)| format!("<b>{}</b>: {text}", names.join(", "));
+    groups.into_iter().map(line).collect()
 }
 
 /// Every attribute and the case's text, folded away.

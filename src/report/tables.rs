@@ -110,7 +110,7 @@ fn largest_cell(run: &Summarised<'_>, largest: Option<Largest>) -> String {
 
 /// When, as a link that takes the page there.
 fn at(run: &Summarised<'_>, largest: Largest) -> String {
-    if largest.time.is_nan() {
+    if largest.time.is_nan() || largest.value == 0.0 {
         return String::new();
     }
     format!(" <span class=\"when\">at {} ms</span>", moment(&run.run.label, largest.time))

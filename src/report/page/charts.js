@@ -22,6 +22,7 @@ class Panel {
     this.place = element("div", "chart");
     this.place.tabIndex = 0;
     this.place.setAttribute("role", "application");
+    this.place.setAttribute("aria-label", `${card.quantity.title} in ${run.label}`);
     this.place.addEventListener("keydown", (event) => this.key(event));
     this.element.append(this.place);
     this.line = element("div", "now");
@@ -61,7 +62,7 @@ class Panel {
         hooks: {
           setCursor: [(plot) => this.hover(plot)],
           setSelect: [(plot) => this.select(plot)],
-          setScale: [(plot, key) => key === "x" && this.placeNow()],
+          draw: [() => this.placeNow()],
           drawAxes: [(plot) => this.drawMarks(plot, quantity)],
         },
       },
