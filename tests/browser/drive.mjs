@@ -1,11 +1,12 @@
 // Drives a browser through report pages, from the disk and without a network, and prints as JSON
-// what it saw: `node drive.mjs FOLDER MAIN-PAGE OTHER-PAGE…`. Pictures go into the folder.
+// what it saw: `node drive.mjs FOLDER PEAK MAIN-PAGE OTHER-PAGE…`. PEAK is the link (`#t=…`) of a
+// peak between samples. Pictures go into the folder.
 import { chromium } from "playwright-core";
 import { createHash } from "node:crypto";
 import { basename, join } from "node:path";
 import { pathToFileURL } from "node:url";
 
-const [folder, main, ...others] = process.argv.slice(2);
+const [folder, peakLink, main, ...others] = process.argv.slice(2);
 
 const SIZES = { desktop: { width: 1440, height: 900 }, phone: { width: 390, height: 844 } };
 
@@ -88,6 +89,13 @@ async function link(page) {
     moment: await page.innerText("#moment"),
     address: await page.getAttribute("#link", "href"),
   };
+}
+
+/** A peak between samples is told like any value. */
+async function peak(page) {
+  await page.evaluate((hash) => (location.hash = hash), peakLink);
+  await page.waitForFunction((time) => document.getElementById("time").value === time, Number(peakLink.match(/t=([\d.]+)/)[1]).toFixed(4));
+  return { readings: await readings(page) };
 }
 
 async function play(page) {
@@ -265,7 +273,7 @@ async function otherPages() {
 
 const { page, seen } = await open(main);
 const told = { ...seen };
-for (const step of [link, factor, play, slowMotion, click, drag, keys, names]) told[step.name] = await step(page);
+for (const step of [peak, link, factor, play, slowMotion, click, drag, keys, names]) told[step.name] = await step(page);
 await page.context().close();
 told.pictures = await pictures();
 told.others = await otherPages();
