@@ -63,6 +63,7 @@ impl Report {
             .collect();
         let html = page::page(&page::Content {
             title: &escape(&title(&runs)),
+            failures: &provenance::failures(&runs),
             summary: &tables::summary(&summarised),
             contacts: &tables::contacts(&summarised),
             what_was_run: &provenance::what_was_run(&runs, &samples),

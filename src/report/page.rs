@@ -35,6 +35,7 @@ const MODULES: [(&str, &str); 14] = [
 /// What the template is filled with; HTML, but for the title and the runs, all of it escaped.
 pub(super) struct Content<'a> {
     pub title: &'a str,
+    pub failures: &'a str,
     pub summary: &'a str,
     pub contacts: &'a str,
     pub what_was_run: &'a str,
@@ -62,6 +63,7 @@ pub(super) fn page(content: &Content<'_>) -> String {
             ("style", &style),
             ("script", &script),
             ("title", content.title),
+            ("failures", content.failures),
             ("summary", content.summary),
             ("contacts", content.contacts),
             ("what_was_run", content.what_was_run),

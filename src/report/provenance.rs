@@ -50,6 +50,20 @@ pub(super) fn what_was_run(runs: &[Run<'_>], samples_in_page: &[usize]) -> Strin
     table.finish("provenance")
 }
 
+/// A paragraph for each run that did not come to its end.
+pub(super) fn failures(runs: &[Run<'_>]) -> String {
+    let failed = runs.iter().filter_map(|run| Some((run, run.failure()?)));
+    let paragraph = |(run, failure): (&Run<'_>, String)| {
+        let until = match run.times.last() {
+            Some(last) => format!("Shown is what was simulated until {} ms.", milliseconds(*last)),
+            None => "Nothing was simulated.".to_owned(),
+        };
+        let (label, failure) = (escape(&run.label), escape(&failure));
+        format!("<p class=\"failure\">{label} did not come to its end: {failure}. {until}</p>")
+    };
+    failed.map(paragraph).collect()
+}
+
 fn told(run: &Run<'_>, attribute: &str) -> String {
     match run.file.attribute(attribute) {
         None => "–".to_owned(),

@@ -249,8 +249,8 @@ class Card {
 
   noteText() {
     const { note, sampled } = this.quantity;
-    const coarse = sampled && this.runs.some((run) => run.contacts.length > 0);
-    return note ?? (coarse ? "Drawn through the samples of the file; what happens between them is not seen here." : "");
+    if (this.runs.every((run) => run.contacts.length === 0)) return "";
+    return note ?? (sampled ? "Drawn through the samples of the file; what happens between them is not seen here." : "");
   }
 
   /** The joints with clearance; a single curve, where several runs are compared. */
@@ -320,6 +320,10 @@ class Card {
           if (value < low) low = value;
           if (value > high) high = value;
         }
+      }
+      for (const { item } of curves) {
+        const mark = this.quantity.mark?.(run, item) ?? high;
+        [low, high] = [Math.min(low, mark), Math.max(high, mark)];
       }
     }
     return low <= high ? [low, high] : [0, 0];

@@ -18,6 +18,7 @@ async function start() {
   const runs = await readRuns(byId("runs"));
   refreshTheme();
   const sampled = runs.filter((run) => run.times.length > 0);
+  byId("motion").hidden = sampled.length === 0;
   const begin = Math.min(...sampled.map((run) => run.begin));
   const end = Math.max(...sampled.map((run) => run.end));
   const clock = sampled.length ? new Clock(begin, end) : new Clock(0, 0);
