@@ -18,5 +18,8 @@ pub mod run;
 pub mod record;
 pub mod case;
 pub mod simulate;
+pub mod post;
+pub mod compare;
+pub mod figure;
 pub mod report;
 pub mod cli;

@@ -1,6 +1,6 @@
 //! From a checked case to a finished run: which arithmetic, which engine, which loop.
 
-use crate::case::{self, Case, EngineName, NormName, SolverPlan};
+use crate::case::{self, Case, EngineName, NormName, Sampling, SolverPlan};
 use crate::dae::{Count, Engine};
 use crate::engine::ida::{self, Ida};
 use crate::mechanism::Mechanism;
@@ -57,6 +57,10 @@ impl<'a> Simulation<'a> {
         let model = Model::new(&case.description).map_err(|complaints| case.reject(complaints))?;
         let mechanism = Mechanism::new(model).map_err(|complaints| case.reject(complaints))?;
         let schedule = Schedule::new(&case.plan.duration, &case.plan.sample_interval);
+        let schedule = match case.plan.sampling {
+            Sampling::Uniform => schedule,
+            Sampling::Adaptive => schedule.adaptive(),
+        };
         Ok(Simulation { case, mechanism, schedule })
     }
 
@@ -68,6 +72,13 @@ impl<'a> Simulation<'a> {
     /// When samples are taken.
     pub fn schedule(&self) -> &Schedule {
         &self.schedule
+    }
+
+    /// The same simulation, sampled at exactly these times (s): one or more, strictly increasing,
+    /// none negative, none beyond the case's duration. The trajectory does not depend on them.
+    pub fn sampled_at(mut self, times: Vec<f64>) -> Self {
+        self.schedule = self.schedule.at(times);
+        self
     }
 
     /// Simulates. What is recorded until an error stays recorded; `statistics` are told in either

@@ -462,9 +462,8 @@ fn text_of_a_case_stays_text() {
 #[test]
 fn the_summary_has_the_known_maxima_of_the_ideal_mechanism() {
     let html = std::fs::read_to_string(&seen().page).unwrap();
-    // REFERENCES.md: 892.919148, 270.866700, 221.253366 N, −10.728744 N m; here of samples, which
-    // miss an extremum by less than half of (ω · 10 µs / 2)² · its curvature in turns.
-    for known in ["892.919", "270.866", "221.252", "−10.7287"] {
+    // Exact: 892.919148, 270.866700, 221.253366 N, 8.546034 and −10.728744 N m.
+    for known in ["892.919", "270.867", "221.253", "8.54603", "−10.7287"] {
         assert!(html.contains(&format!("<td>{known}")), "{known} is not in the summary");
     }
 }

@@ -3,6 +3,9 @@
 //! The normal force pushes the journal along −n, the tangential force acts on it along t; on each
 //! body at its own contact point, R_j n and R_b n from the centres, as the paper's moments do.
 //! The arms differ by δ, so angular momentum is kept only to δ F_T.
+//!
+//! Eq. 10 takes F_N as pressing the surfaces together. Where the normal law pulls there is no
+//! friction: a negative F_N in eq. 10 would drive the slip.
 
 use super::{Clearance, Contact, Gap, GapRates, GapSlopes};
 use crate::contact::{NormalForce, Penetration};
@@ -51,7 +54,9 @@ impl<S: Scalar> Clearance<S> {
             normal = NormalForce { elastic: normal.elastic, ..NormalForce::none() };
         }
         let ratio = match (&self.friction, contact.slip_region) {
-            (Some(friction), Some(region)) => friction.ratio(region, rates.slip),
+            (Some(friction), Some(region)) if !contact.pulling => {
+                friction.ratio(region, rates.slip)
+            }
             _ => (S::zero(), S::zero()),
         };
         let tangential = ratio.0 * normal.value;

@@ -52,7 +52,9 @@ impl<S: Scalar> Clearance<S> {
         if self.friction.is_some() {
             slots.extend([EventSlot::LowerEdge, EventSlot::UpperEdge]);
         }
-        if self.cut_tension && self.normal.damping_weight() > S::zero() {
+        // pulling changes the force where tension is cut, and ends friction in any case
+        let matters = self.cut_tension || self.friction.is_some();
+        if matters && self.normal.damping_weight() > S::zero() {
             slots.push(EventSlot::Pull);
         }
         slots
@@ -60,11 +62,13 @@ impl<S: Scalar> Clearance<S> {
 
     /// A contact that begins at a rate (m/s) and slip (m/s).
     pub fn begin(&self, rate: S, slip: S) -> Contact<S> {
+        let inverse_impact_rate = S::one() / rate.max(self.minimum_impact_rate);
+        let factor = S::one() + self.normal.damping_weight() * rate * inverse_impact_rate;
         Contact {
             impact_rate: rate,
-            inverse_impact_rate: S::one() / rate.max(self.minimum_impact_rate),
+            inverse_impact_rate,
             slip_region: self.friction.map(|friction| friction.region(slip)),
-            pulling: false,
+            pulling: factor < S::zero(),
         }
     }
 

@@ -1,9 +1,12 @@
 //! The command line, one file a command.
 
 mod check;
+mod compare;
 mod info;
+mod plot;
 mod report;
 mod run;
+mod summary;
 
 use clap::{Args, Parser, Subcommand};
 use std::error::Error as StdError;
@@ -26,6 +29,12 @@ enum Command {
     Check(check::Arguments),
     /// Say what a result file holds and how it was made.
     Info(info::Arguments),
+    /// Say what a result file shows: peaks, ratios to the ideal mechanism, contacts, energies.
+    Summary(summary::Arguments),
+    /// Say how far a trajectory agrees with a reference, in digits over time.
+    Compare(compare::Arguments),
+    /// Draw the figures of result files, as journals print them.
+    Plot(plot::Arguments),
     /// Write a page on one or several runs: summary, charts, the mechanism in motion.
     Report(report::Arguments),
 }
@@ -89,6 +98,17 @@ impl Failure {
     }
 }
 
+/// An error and its causes in one line.
+fn chain(error: &(impl StdError + ?Sized)) -> String {
+    let mut line = error.to_string();
+    let mut cause = error.source();
+    while let Some(error) = cause {
+        line = format!("{line}: {error}");
+        cause = error.source();
+    }
+    line
+}
+
 /// Prints a result on stdout; a reader that has gone away is no error.
 fn print(result: impl std::fmt::Display) {
     use std::io::Write;
@@ -101,6 +121,9 @@ pub fn main() -> ExitCode {
         Command::Run(arguments) => run::run(&arguments),
         Command::Check(arguments) => check::check(&arguments),
         Command::Info(arguments) => info::info(&arguments),
+        Command::Summary(arguments) => summary::summary(&arguments),
+        Command::Compare(arguments) => compare::compare(&arguments),
+        Command::Plot(arguments) => plot::plot(&arguments),
         Command::Report(arguments) => report::report(&arguments),
     };
     match done {

@@ -1,6 +1,6 @@
 //! `freeplay run CASE`
 
-use super::{CaseArguments, Failure};
+use super::{CaseArguments, Failure, chain};
 use crate::record::{Ending, Outcome, Writer, utc};
 use crate::run::Progress;
 use crate::simulate::{self, Simulation, Statistics};
@@ -45,7 +45,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         "{}: {}, {} samples, {} contacts, {} steps in {:.2} s\n",
         told.path.display(),
         case.name,
-        told.samples,
+        told.progress.samples,
         told.progress.contacts,
         told.progress.steps,
         begun.elapsed().as_secs_f64()
@@ -56,7 +56,6 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
 /// What a finished run tells in one line.
 struct Told {
     path: PathBuf,
-    samples: u64,
     progress: Progress,
 }
 
@@ -68,7 +67,6 @@ fn simulate_into(
     quiet: bool,
 ) -> Result<Told, Failure> {
     let duration: f64 = simulation.schedule().duration();
-    let samples = simulation.schedule().len();
     let bar = progress_bar(quiet);
     let begun = Instant::now();
     let mut last = Progress::default();
@@ -86,7 +84,7 @@ fn simulate_into(
     let finished = writer.finish(ending(statistics, reason));
     let Err(error) = ran else {
         let path = finished.map_err(Failure::output)?;
-        return Ok(Told { path, samples, progress: last });
+        return Ok(Told { path, progress: last });
     };
     let rest = match finished {
         Ok(path) => format!("what was simulated until then is in {}", path.display()),
@@ -107,17 +105,6 @@ fn ending(statistics: Statistics, failure: Option<String>) -> Ending {
     };
     let Statistics { engine: counts, rulings } = statistics;
     Ending { outcome, counts, rulings, finished_utc: utc(SystemTime::now()) }
-}
-
-/// An error and its causes in one line.
-fn chain(error: &(impl std::error::Error + ?Sized)) -> String {
-    let mut line = error.to_string();
-    let mut cause = error.source();
-    while let Some(error) = cause {
-        line = format!("{line}: {error}");
-        cause = error.source();
-    }
-    line
 }
 
 fn progress_bar(quiet: bool) -> ProgressBar {

@@ -7,7 +7,8 @@
 //! minimise  |C + C_q dq|² + dqᵀ W dq   subject to   H + H_q dq = 0
 //! ```
 //! with the exact conditions H, the centring conditions C and a small mass-like weight W; it is
-//! repeated until nothing changes. Velocities are one such problem, linear, with the rates of
+//! repeated until nothing changes, at last without C, for the exact conditions have the last word
+//! where the two cannot both be met. Velocities are one such problem, linear, with the rates of
 //! the same conditions.
 
 use super::Mechanism;
@@ -25,6 +26,9 @@ const NAMED: f64 = 1e-6;
 const UNNAMED: f64 = 1e-3;
 /// Keeps redundant but consistent conditions solvable.
 const SLACK: f64 = 1e-10;
+/// Steps that only the exact conditions have a say in: each gains the digits of SLACK and more,
+/// and 71 are wanted.
+const LAST_STEPS: usize = 6;
 
 /// A condition on one coordinate: it has this value.
 #[derive(Debug, Clone, Copy)]
@@ -120,9 +124,20 @@ impl<S: Scalar> Mechanism<S> {
         for fixed in &fixed {
             q[fixed.at] = fixed.value;
         }
+        self.approach(q, &fixed);
+        for _ in 0..LAST_STEPS {
+            let mut conditions = self.position_conditions(q, &fixed);
+            conditions.wished.clear();
+            let Some(change) = conditions.change() else { return };
+            q.iter_mut().zip(change).for_each(|(q, change)| *q += change);
+        }
+    }
+
+    /// Moves q until exact conditions and wishes are met as nearly as they can be together.
+    fn approach(&mut self, q: &mut [S], fixed: &[Fixed<S>]) {
         let done = S::from_f64(4.0 * S::EPSILON * self.length);
         for step in 0..MOST_STEPS {
-            let mut conditions = self.position_conditions(q, &fixed);
+            let mut conditions = self.position_conditions(q, fixed);
             if step < 2 {
                 // what the case does not name goes first
                 let heavy = S::from_f64(1.0 / NAMED);
@@ -136,7 +151,7 @@ impl<S: Scalar> Mechanism<S> {
                 for (k, x) in best.iter_mut().enumerate() {
                     *x = q[k] + fraction * change[k];
                 }
-                if self.position_conditions(&best, &fixed).error() <= before {
+                if self.position_conditions(&best, fixed).error() <= before {
                     break;
                 }
                 fraction *= S::from_f64(0.5);
@@ -291,10 +306,10 @@ impl<S: Scalar> Mechanism<S> {
         let fixed = self.fixed(|start| start.velocities);
         let mut v = self.named(|start| start.velocities);
         // the problem is linear; repeating it removes what SLACK and rounding leave
-        for _ in 0..12 {
+        for step in 0..2 * LAST_STEPS {
             self.place(&State { time: S::zero(), q, v: &v, turns: None });
             let weights = self.weights(|start| start.velocities);
-            let conditions = self.conditions(
+            let mut conditions = self.conditions(
                 weights,
                 &fixed,
                 |k| v[k],
@@ -302,6 +317,9 @@ impl<S: Scalar> Mechanism<S> {
                     row.constraint.velocity_error(&self.now.poses, &self.now.motions, error);
                 },
             );
+            if step >= LAST_STEPS {
+                conditions.wished.clear();
+            }
             let Some(change) = conditions.change() else { break };
             v.iter_mut().zip(change).for_each(|(v, change)| *v += change);
         }

@@ -168,11 +168,16 @@ fn names(header: &Header, dimension: Dimension) -> Option<&[String]> {
 }
 
 /// Makes an empty file that any HDF5 from 1.8 reads. Chunks are written whole and once, so that
-/// caching them would only cost memory.
+/// caching them would only cost memory. The file's name is known to nobody yet, so that it needs
+/// no lock: some network file systems have none, and a process started meanwhile would inherit it
+/// and keep the file shut after it was published.
 fn create_file(at: &Path) -> hdf5::Result<File> {
     File::with_options()
         .with_fapl(|access| {
-            access.libver_bounds(LibraryVersion::V18, LibraryVersion::V110).chunk_cache(1, 0, 0.0)
+            access
+                .libver_bounds(LibraryVersion::V18, LibraryVersion::V110)
+                .chunk_cache(1, 0, 0.0)
+                .file_locking(false)
         })
         .with_fcpl(|creation| {
             creation

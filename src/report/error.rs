@@ -1,6 +1,6 @@
 //! Why there is no page.
 
-use crate::record;
+use crate::{post, record};
 use std::io;
 use std::path::PathBuf;
 
@@ -10,6 +10,9 @@ pub enum Error {
     /// A result file cannot be read.
     #[error(transparent)]
     Record(#[from] record::Error),
+    /// A run cannot be summarised.
+    #[error(transparent)]
+    Summary(#[from] post::Error),
     /// The samples of a result file could not be packed into the page.
     #[error("cannot pack {what} of {}", path.display())]
     Pack {

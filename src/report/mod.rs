@@ -11,19 +11,18 @@ mod pack;
 mod page;
 mod provenance;
 mod run;
-mod summary;
 mod tables;
 mod thin;
 
 pub use error::Error;
 
+use crate::post::Summary;
 use crate::record::ResultFile;
 use html::{escape, json_in_script};
 use run::{PageRun, Run};
 use std::fs::{self, OpenOptions};
 use std::io::{self, ErrorKind, Write};
 use std::path::Path;
-use summary::Summary;
 use tables::Summarised;
 
 /// Samples that a page holds at most, of all its runs together.
@@ -58,9 +57,8 @@ impl Report {
         let samples: Vec<usize> = pages.iter().map(PageRun::samples).collect();
         let summarised: Vec<Summarised<'_>> = runs
             .iter()
-            .zip(references)
-            .map(|(run, reference)| Summarised { run, summary: Summary::of(run), reference })
-            .collect();
+            .map(|run| Ok(Summarised { run, summary: Summary::of(run.file, None)? }))
+            .collect::<Result<_, Error>>()?;
         let html = page::page(&page::Content {
             title: &escape(&title(&runs)),
             failures: &provenance::failures(&runs),

@@ -6,7 +6,7 @@ use super::pack::{Packed, TIME_DIGITS, VALUE_DIGITS, pack};
 use super::thin::rows_to_keep;
 use crate::case::Case;
 use crate::record::{self, ResultFile, Table, column_name};
-use crate::run::{Contact, Peak};
+use crate::run::Contact;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -59,7 +59,6 @@ pub(super) struct Run<'a> {
     pub case: Option<Case>,
     pub times: Vec<f64>,
     pub contacts: Vec<Contact>,
-    pub peaks: Vec<Peak>,
     tables: BTreeMap<&'static str, Table>,
 }
 
@@ -103,7 +102,6 @@ impl<'a> Run<'a> {
             case: drawing::case_of(file),
             times: file.times()?,
             contacts: file.contacts()?,
-            peaks: file.peaks()?,
             tables,
         })
     }

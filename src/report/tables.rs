@@ -3,117 +3,198 @@
 use super::html::escape;
 use super::number::{milliseconds, significant};
 use super::run::Run;
-use super::summary::{ENERGIES, Largest, Summary, Touching};
+use crate::post::{
+    Contacts, EnergyBalance, Extreme, Extremes, Quantity, Reference, Stretch, Summary, Tally,
+};
+use crate::record::ResultFile;
 use crate::run::Contact;
 
 /// Rows of a run's contact table at most; beyond, the hardest contacts are shown.
 const MOST_CONTACTS: usize = 1000;
 
-/// A run, its summary, and the run of the same mechanism without clearances.
+/// Revolutions that the summary tells at most.
+const MOST_REVOLUTIONS: usize = 12;
+
+/// A run and its summary.
 pub(super) struct Summarised<'a> {
     pub run: &'a Run<'a>,
     pub summary: Summary,
-    /// Index among the runs of the page.
-    pub reference: Option<usize>,
+}
+
+/// Joints, drives or bodies of a run, and which quantity of theirs is meant.
+type Items = (fn(&ResultFile) -> &[String], fn(usize) -> Quantity);
+
+const FORCES: Items = (ResultFile::joints, Quantity::JointForce);
+const TORQUES: Items = (ResultFile::drives, Quantity::DriveTorque);
+const ACCELERATIONS: Items = (ResultFile::bodies, Quantity::AngularAcceleration);
+
+impl Summarised<'_> {
+    /// The quantity of an item of this run, with its extremes.
+    fn quantity(&self, (names, kind): Items, item: &str) -> Option<(Quantity, &Tally)> {
+        let quantity = kind(names(self.run.file).iter().position(|name| name == item)?);
+        let tally = self.summary.run.of(&quantity.name(&self.summary.run.names))?;
+        Some((quantity, tally))
+    }
+
+    /// What this run knows of the contacts of a joint.
+    fn contacts(&self, joint: &str) -> Option<&Contacts> {
+        self.summary.contacts.iter().find(|contacts| contacts.joint == joint)
+    }
 }
 
 /// Maxima, contacts and energies: a column a run.
 pub(super) fn summary(runs: &[Summarised<'_>]) -> String {
     let mut table = Matrix::new(runs.iter().map(|run| run.run.label.as_str()));
-    let files = || runs.iter().map(|run| run.run.file);
-    table.group("Largest force in a joint (N)");
-    for joint in union(files().map(|file| file.joints())) {
-        table.row(&joint, runs.iter().map(|run| force_cell(runs, run, &joint)));
+    let all = |names: fn(&ResultFile) -> &[String]| union(runs.iter().map(|r| names(r.run.file)));
+    table.group("Largest force in a joint (N), and its ratio to the ideal mechanism's");
+    for joint in all(ResultFile::joints) {
+        table.row(&joint, runs.iter().map(|run| extreme_cell(run, FORCES, &joint, 0)));
     }
-    let drives = union(files().map(|file| file.drives()));
-    table.group_if(!drives.is_empty(), "Largest drive torque (N m)");
-    for drive in drives {
-        let of = |run: &Summarised<'_>| {
-            place(run.run.file.drives(), &drive).map(|k| run.summary.torques.get(k).copied())
-        };
-        table.row(&drive, runs.iter().map(|run| largest_cell(run, of(run).flatten())));
+    for (heading, items) in
+        [("Drive torque (N m)", TORQUES), ("Angular acceleration (rad/s²)", ACCELERATIONS)]
+    {
+        signed_rows(&mut table, runs, heading, items, &all(items.0));
     }
-    table.group("Largest angular acceleration (rad/s²)");
-    for body in union(files().map(|file| file.bodies())) {
-        let of = |run: &Summarised<'_>| {
-            place(run.run.file.bodies(), &body).map(|k| run.summary.accelerations.get(k).copied())
-        };
-        table.row(&body, runs.iter().map(|run| largest_cell(run, of(run).flatten())));
-    }
-    for clearance in union(files().map(|file| file.clearances())) {
-        contact_rows(&mut table, runs, &clearance);
+    for joint in all(ResultFile::clearances) {
+        contact_rows(&mut table, runs, &joint);
+        revolution_rows(&mut table, runs, &joint);
     }
     energy_rows(&mut table, runs);
-    table.finish("summary")
+    let without_ideal = runs.iter().filter_map(|run| {
+        let why = run.summary.reference.as_ref().err()?;
+        let (label, why) = (escape(&run.run.label), escape(&why.to_string()));
+        Some(format!("<p class=\"note\">{label} has no ratios to an ideal run: {why}.</p>"))
+    });
+    let notes: String = without_ideal.collect();
+    table.finish("summary") + &notes
 }
 
-fn contact_rows(table: &mut Matrix, runs: &[Summarised<'_>], clearance: &str) {
-    table.group(&format!("Journal and bearing in {}", escape(clearance)));
-    let mut row = |name: &str, value: fn(&Touching) -> String| {
+/// The largest and the smallest value of each item that is not zero throughout.
+fn signed_rows(
+    table: &mut Matrix,
+    runs: &[Summarised<'_>],
+    heading: &str,
+    items: Items,
+    names: &[String],
+) {
+    let is_zero = |name: &&String| {
+        let magnitude = |run: &Summarised<'_>| run.quantity(items, name)?.1.total.magnitude();
+        runs.iter().filter_map(magnitude).all(|magnitude| magnitude == 0.0)
+    };
+    let names: Vec<&String> = names.iter().filter(|name| !is_zero(name)).collect();
+    if !names.is_empty() {
+        table.group(heading);
+    }
+    for name in names {
+        for (side, word) in ["largest", "smallest"].into_iter().enumerate() {
+            let cells = runs.iter().map(|run| extreme_cell(run, items, name, side));
+            table.row(&format!("{name}, {word}"), cells);
+        }
+    }
+}
+
+fn contact_rows(table: &mut Matrix, runs: &[Summarised<'_>], joint: &str) {
+    table.group(&format!("Journal and bearing in {}", escape(joint)));
+    let mut row = |name: &str, value: fn(&Contacts) -> Option<f64>, digits: i32| {
         let cell = |run: &Summarised<'_>| {
-            let k = place(run.run.file.clearances(), clearance);
-            k.and_then(|k| run.summary.touching.get(k)).map_or_else(dash, value)
+            let value = run.contacts(joint).and_then(value);
+            value.map_or_else(dash, |value| significant(value, digits))
         };
         table.row(name, runs.iter().map(cell));
     };
-    row("contacts", |t| t.contacts.to_string());
-    row("time in contact (%)", |t| significant(100.0 * t.share, 3));
-    row("longest contact (ms)", |t| significant(1e3 * t.longest_contact, 4));
-    row("longest flight (ms)", |t| significant(1e3 * t.longest_flight, 4));
-    row("largest depth (µm)", |t| significant(1e6 * t.penetration, 4));
-    row("largest impact rate (m/s)", |t| significant(t.impact_rate, 4));
-    row("dissipated (mJ)", |t| significant(1e3 * t.dissipated, 4));
+    row("contacts", |c| Some(c.count as f64), 1);
+    row("time in contact (%)", |c| Some(100.0 * c.share?), 3);
+    row("longest contact (ms)", |c| Some(1e3 * c.longest_contact?.length()), 4);
+    row("longest flight (ms)", |c| Some(1e3 * c.longest_flight?.length()), 4);
+    row("largest depth (µm)", |c| Some(1e6 * c.deepest?.value), 4);
+    row("largest impact rate (m/s)", |c| Some(c.fastest?.value), 4);
+    row("dissipated (mJ)", |c| Some(1e3 * c.dissipated), 4);
+    let permanent = |run: &Summarised<'_>| {
+        let phases = run.contacts(joint)?.permanent.iter();
+        let phase = |s: &Stretch| format!("{} to {}", milliseconds(s.begin), milliseconds(s.end));
+        Some(phases.map(phase).collect::<Vec<_>>().join("<br>"))
+    };
+    let told = |run| permanent(run).filter(|phases| !phases.is_empty()).unwrap_or_else(dash);
+    table.row("permanent contact (ms)", runs.iter().map(told));
+}
+
+/// Ratio of the largest force in each revolution to the ideal mechanism's largest.
+fn revolution_rows(table: &mut Matrix, runs: &[Summarised<'_>], joint: &str) {
+    let extremes = |run: &Summarised<'_>, k: usize| {
+        let (quantity, tally) = run.quantity(FORCES, joint)?;
+        run.contacts(joint)?;
+        run.summary.ratios(quantity, tally.revolutions.get(k)?)[0]
+    };
+    let count =
+        (0..=MOST_REVOLUTIONS).take_while(|k| runs.iter().any(|r| extremes(r, *k).is_some()));
+    let count = count.count();
+    if count == 0 {
+        return;
+    }
+    let first = if count > MOST_REVOLUTIONS { ", the first revolutions" } else { "" };
+    let joint = escape(joint);
+    table.group(&format!("Largest force in {joint} over the ideal mechanism's{first}"));
+    for k in 0..count.min(MOST_REVOLUTIONS) {
+        let cell = |run| extremes(run, k).map_or_else(dash, |ratio| significant(ratio, 3));
+        table.row(&format!("revolution {}", k + 1), runs.iter().map(cell));
+    }
 }
 
 fn energy_rows(table: &mut Matrix, runs: &[Summarised<'_>]) {
-    table.group("Energy balance at the end (J)");
-    for (dataset, name) in ENERGIES {
-        let of = |run: &Summarised<'_>| {
-            run.summary.energies.iter().find(|(known, _)| *known == dataset).map(|(_, v)| *v)
-        };
-        if runs.iter().any(|run| of(run).is_some_and(|value| value != 0.0)) {
-            let cell = |run| of(run).map_or_else(dash, |value| significant(value, 6));
+    table.group("Energy balance of the run (J)");
+    let mut row = |name: &str, value: fn(&EnergyBalance) -> f64, digits: i32| {
+        let value = |run: &Summarised<'_>| run.summary.energy.as_ref().map(value);
+        if runs.iter().filter_map(value).any(|value| value != 0.0) {
+            let cell = |run| value(run).map_or_else(dash, |value| significant(value, digits));
             table.row(name, runs.iter().map(cell));
         }
-    }
-    let residual = |run: &Summarised<'_>| significant(run.summary.residual.value, 2);
-    table.row("largest residual of the balance", runs.iter().map(residual));
-    let relative = |run: &Summarised<'_>| {
-        let Summary { residual, kinetic, .. } = &run.summary;
-        significant(residual.value.abs() / kinetic.value.abs(), 2)
     };
-    table.row("the same over the largest kinetic energy", runs.iter().map(relative));
+    row("work of the drives", |e| e.drive_work, 6);
+    row("work of applied forces", |e| e.load_work, 6);
+    row("dissipated", |e| e.dissipated, 6);
+    row("stored more than at the begin", |e| e.stored, 6);
+    row("largest residual", |e| e.largest_residual.value, 2);
+    row("the same over the largest kinetic energy", relative_residual, 2);
 }
 
-/// Largest force, its ratio to the ideal mechanism's, its time.
-fn force_cell(runs: &[Summarised<'_>], run: &Summarised<'_>, joint: &str) -> String {
-    let force = |of: &Summarised<'_>| {
-        let joint = place(of.run.file.joints(), joint)?;
-        of.summary.forces.get(joint).copied()
-    };
-    let ideal = run.reference.and_then(|k| force(&runs[k])).map(|largest| largest.value);
-    let Some(largest) = force(run) else {
+fn relative_residual(energy: &EnergyBalance) -> f64 {
+    energy.largest_residual.value / energy.largest_kinetic
+}
+
+/// The largest (0) or smallest (1) value of an item, its ratio to the reference's, its time.
+fn extreme_cell(run: &Summarised<'_>, items: Items, item: &str, side: usize) -> String {
+    let Some((quantity, tally)) = run.quantity(items, item) else {
         return dash();
     };
-    let ratio = ideal.map(|ideal| {
-        let title = "ratio to the ideal mechanism's largest force in this joint";
-        let ratio = significant(largest.value / ideal, 3);
-        format!(" <span class=\"ratio\" title=\"{title}\">{ratio}\u{202f}×</span>")
+    let Extremes { largest, smallest } = tally.total;
+    let Some(extreme) = [largest, smallest][side] else {
+        return dash();
+    };
+    let itself = matches!(run.summary.reference, Ok(Reference::Itself));
+    let ratio = run.summary.ratios(quantity, &tally.total)[side].filter(|_| !itself);
+    let ratio = ratio.map_or_else(String::new, |ratio| {
+        let ratio = significant(ratio, 3);
+        format!(" <span class=\"ratio\" title=\"over the ideal one\">{ratio}\u{202f}×</span>")
     });
-    format!("{}{}{}", significant(largest.value, 6), ratio.unwrap_or_default(), at(run, largest))
+    format!("{}{ratio}{}", with_uncertainty(&extreme), at(run, &extreme))
 }
 
-fn largest_cell(run: &Summarised<'_>, largest: Option<Largest>) -> String {
-    let cell = |largest: Largest| format!("{}{}", significant(largest.value, 6), at(run, largest));
-    largest.map_or_else(dash, cell)
+/// A value, and by how much it may be off for want of samples.
+fn with_uncertainty(extreme: &Extreme) -> String {
+    let value = significant(extreme.value, 6);
+    let sizeable = |uncertainty: &f64| *uncertainty > 5e-7 * extreme.value.abs();
+    match extreme.uncertainty.filter(sizeable) {
+        Some(uncertainty) => {
+            let digits = significant(uncertainty, 1);
+            format!("{value} <span class=\"about\">±\u{202f}{digits}</span>")
+        }
+        None => value,
+    }
 }
 
 /// When, as a link that takes the page there.
-fn at(run: &Summarised<'_>, largest: Largest) -> String {
-    if largest.time.is_nan() || largest.value == 0.0 {
-        return String::new();
-    }
-    format!(" <span class=\"when\">at {} ms</span>", moment(&run.run.label, largest.time))
+fn at(run: &Summarised<'_>, extreme: &Extreme) -> String {
+    format!(" <span class=\"when\">at {} ms</span>", moment(&run.run.label, extreme.time))
 }
 
 /// A link to a moment (s) of a run.
@@ -213,12 +294,6 @@ impl Matrix {
         ));
     }
 
-    fn group_if(&mut self, wanted: bool, heading: &str) {
-        if wanted {
-            self.group(heading);
-        }
-    }
-
     /// A row; its name is text, its cells are HTML.
     pub fn row(&mut self, name: &str, cells: impl Iterator<Item = String>) {
         let cells: String = cells.map(|cell| format!("<td>{cell}</td>")).collect();
@@ -243,10 +318,6 @@ impl Matrix {
 
 fn dash() -> String {
     "–".to_owned()
-}
-
-fn place(names: &[String], name: &str) -> Option<usize> {
-    names.iter().position(|known| known == name)
 }
 
 /// All names, each once, in the order in which they are met.

@@ -6,7 +6,7 @@
 
 use super::{Error, Progress, Recorder, RulingCounts, Schedule, Watcher};
 use crate::dae::{Fault, Snapshot, State, System};
-use crate::mechanism::Mechanism;
+use crate::mechanism::{Mechanism, Observation};
 use crate::scalar::Scalar;
 use std::convert::Infallible;
 use std::ops::ControlFlow;
@@ -61,10 +61,57 @@ pub fn kinematic<S: Scalar, R: Recorder>(
             }
         }
         let observation = mechanism.observe(schedule.time(k), &now.integrals);
+        progress.samples += 1;
         recorder.sample(&observation).map_err(Error::Recorder)?;
     }
     let _ = watch(&progress);
     Ok(RulingCounts::default())
+}
+
+/// A mechanism without freedom and without clearance, at any time that is asked for.
+#[derive(Debug, Clone)]
+pub struct Assembled<S> {
+    mechanism: Mechanism<S>,
+    now: Snapshot<S>,
+    stride: f64,
+}
+
+impl<S: Scalar> Assembled<S> {
+    /// Takes a mechanism at its start; `None` if it has freedoms or clearances, so that its
+    /// motion does not follow from the drives alone.
+    pub fn new(mechanism: Mechanism<S>) -> Option<Self> {
+        let follows = mechanism.freedoms() == 0 && mechanism.modes().is_empty();
+        let now = mechanism.start().clone();
+        let stride = LARGEST_TURN / mechanism.fastest_turn().max(1e-300);
+        follows.then_some(Assembled { mechanism, now, stride })
+    }
+
+    /// Time (s) in which the body that is the fastest at the start turns by 0.05 rad.
+    pub fn stride(&self) -> f64 {
+        self.stride
+    }
+
+    /// The mechanism.
+    pub fn mechanism(&self) -> &Mechanism<S> {
+        &self.mechanism
+    }
+
+    /// Everything at a time (s), to the rounding of the arithmetic; nearest is quickest, as the
+    /// way there from the time asked for last is gone in strides. Works are not carried along:
+    /// `drive_work` and `residual` of the energies mean nothing.
+    ///
+    /// # Errors
+    /// A position that cannot be reached or is singular.
+    pub fn observe(&mut self, time: S) -> Result<Observation, Fault> {
+        let from = self.now.time;
+        let strides = ((time - from).abs().to_f64() / self.stride).ceil().max(1.0);
+        for k in 1..strides as u64 {
+            let part = S::from_f64(k as f64 / strides);
+            reach(&mut self.mechanism, &mut self.now, from + (time - from) * part)?;
+        }
+        reach(&mut self.mechanism, &mut self.now, time)?;
+        Ok(self.mechanism.observe(time.to_f64(), &self.now.integrals))
+    }
 }
 
 /// Goes on to a time: work of the drives on the way, then the state there, evaluated.

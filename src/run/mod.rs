@@ -7,10 +7,12 @@
 mod kinematic;
 mod peak;
 mod recorder;
+mod sampling;
 mod schedule;
 mod touching;
+mod window;
 
-pub use kinematic::kinematic;
+pub use kinematic::{Assembled, kinematic};
 pub use recorder::*;
 pub use schedule::Schedule;
 
@@ -18,8 +20,10 @@ use crate::clearance::{EventSlot, Mode};
 use crate::dae::{Advance, Engine, Fault, Snapshot, State, System};
 use crate::mechanism::Mechanism;
 use crate::scalar::Scalar;
+use sampling::Mark;
 use std::ops::ControlFlow;
 use touching::{Contacts, Touching};
+use window::Window;
 
 /// Drift off the constraints that has the state projected and the engine restarted, over the
 /// mechanism's characteristic length.
@@ -72,6 +76,8 @@ pub struct Progress {
     pub steps: u64,
     /// Events so far.
     pub events: u64,
+    /// Samples recorded so far.
+    pub samples: u64,
     /// Contacts begun so far.
     pub contacts: u64,
 }
@@ -99,6 +105,9 @@ struct Run<'a, S: Scalar, E: Engine<S>, R> {
     /// Relative tolerance of the engine: what it makes of a steady force is no peak.
     tolerance: f64,
     next_sample: u64,
+    /// Times within the last step that adaptive sampling looks at.
+    marks: Vec<Mark<S>>,
+    window: Window,
     scratch: Snapshot<S>,
     touching: Vec<Option<Touching<S>>>,
     contacts: Contacts,
@@ -127,14 +136,17 @@ where
     R: Recorder,
 {
     let start = engine.system().start().clone();
+    let clearances = engine.system().modes().len();
     let mut run = Run {
         scratch: start.clone(),
-        touching: vec![None; engine.system().modes().len()],
+        touching: vec![None; clearances],
         engine,
         recorder,
         schedule,
         tolerance,
         next_sample: 0,
+        marks: Vec::new(),
+        window: Window::new(clearances),
         contacts: Contacts::default(),
         peaks: Vec::new(),
         progress: Progress::default(),
@@ -158,13 +170,13 @@ where
 {
     fn go(&mut self, watch: Watcher<'_>) -> Outcome<(), S, E, R> {
         self.begin_contacts()?;
-        self.sample()?;
+        self.sample(false)?;
         let end: S = self.schedule.duration();
         while self.engine.now().time < end {
             let advance = self.engine.step(end).map_err(|source| self.stopped(source))?;
             self.progress.steps += 1;
             self.follow_contacts()?;
-            self.sample()?;
+            self.sample(advance == Advance::Event)?;
             match advance {
                 Advance::Event => self.event()?,
                 Advance::Stepped if self.progress.steps.is_multiple_of(DRIFT_EVERY) => {
@@ -195,31 +207,6 @@ where
 
     fn restart(&mut self, at: &Snapshot<S>) -> Outcome<(), S, E, R> {
         self.engine.restart(at).map_err(|source| self.stopped(source))
-    }
-
-    /// Records every sample due up to now.
-    fn sample(&mut self) -> Outcome<(), S, E, R> {
-        while self.next_sample < self.schedule.len() {
-            let time: S = self.schedule.time(self.next_sample);
-            if time > self.engine.now().time {
-                break;
-            }
-            self.look(time, true)?;
-            let at = self.schedule.time(self.next_sample);
-            let observation = self.engine.system().observe(at, &self.scratch.integrals);
-            self.recorder.sample(&observation).map_err(Error::Recorder)?;
-            self.next_sample += 1;
-        }
-        Ok(())
-    }
-
-    /// Has the system evaluated at a time within the last step; the state stands in `scratch`.
-    fn look(&mut self, time: S, project: bool) -> Outcome<(), S, E, R> {
-        self.engine.within(time, &mut self.scratch).map_err(|source| self.stopped(source))?;
-        if project {
-            self.project()?;
-        }
-        self.evaluate()
     }
 
     /// Projects the state in `scratch`; returns how far it was off.
@@ -339,6 +326,7 @@ where
             dissipated: 0.0,
         });
         self.progress.contacts += 1;
+        self.window.forget_peaks(k);
         self.touching[k] = Some(Touching::new(number, rates, now.integrals[1 + k]));
         Ok(())
     }
@@ -398,6 +386,7 @@ where
         for k in 0..self.touching.len() {
             self.settle(k);
         }
+        self.let_samples_go(&[])?;
         self.flush()?;
         while let Some(contact) = self.contacts.next(true) {
             self.recorder.contact(contact).map_err(Error::Recorder)?;
@@ -405,8 +394,9 @@ where
         Ok(())
     }
 
-    /// Force (N) that the tolerance makes of nothing, where a contact has this slope (N/m).
+    /// Force (N) that the tolerance makes of nothing, where a contact has this slope (N/m): a
+    /// trajectory is off by some tens of times the tolerance of a step.
     fn noise(&mut self, slope: f64) -> f64 {
-        10.0 * self.tolerance * self.engine.system().length() * slope.abs()
+        100.0 * self.tolerance * self.engine.system().length() * slope.abs()
     }
 }

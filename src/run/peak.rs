@@ -1,7 +1,7 @@
 //! True extrema of penetration and force within a step.
 
 use super::recorder::{Peak, Recorder};
-use super::{Outcome, Run};
+use super::{Mark, Outcome, Run};
 use crate::dae::Engine;
 use crate::mechanism::{ContactRates, Mechanism};
 use crate::scalar::Scalar;
@@ -16,7 +16,9 @@ where
     R: Recorder,
 {
     /// Follows every open contact through the last step: rates at its end, maxima inside it.
+    /// Marks what adaptive sampling must not miss.
     pub(super) fn follow_contacts(&mut self) -> Outcome<(), S, E, R> {
+        self.marks.clear();
         // all ends first: a look inside the step moves the system away from them
         let ends: Vec<Option<ContactRates<S>>> =
             (0..self.touching.len()).map(|k| self.engine.system().contact_rates(k)).collect();
@@ -31,7 +33,9 @@ where
             if begin.force_rate > S::zero() && end.force_rate <= S::zero() {
                 let (time, rates) = self.root(k, begin, end, |rates| rates.force_rate)?;
                 self.strongest(k, time.to_f64(), rates.force.to_f64());
+                self.marks.push(Mark { time, peak: Some((k, rates.force.to_f64())) });
             }
+            self.mark_bend(&begin, &end);
             self.deepest(k, end.depth);
             let noise = self.noise(end.slope.to_f64());
             if let Some(touching) = self.touching[k].as_mut() {

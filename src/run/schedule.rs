@@ -3,14 +3,25 @@
 use crate::scalar::{Decimal, F256, Scalar};
 
 /// Sample times: the multiples k · interval from 0 to the duration, both ends included; the
-/// duration itself where it is no multiple. Each is the decimal product, rounded once.
-#[derive(Debug, Clone, Copy)]
+/// duration itself where it is no multiple. Each is the decimal product, rounded once. Or any
+/// times within the duration.
+#[derive(Debug, Clone)]
 pub struct Schedule {
     duration: F256,
-    interval: F256,
-    /// Number of multiples of the interval, zero among them.
-    multiples: u64,
-    ends_between: bool,
+    grid: Grid,
+    adaptive: bool,
+}
+
+/// The sample times that are known beforehand.
+#[derive(Debug, Clone)]
+enum Grid {
+    Uniform {
+        interval: F256,
+        /// Number of multiples of the interval, zero among them.
+        multiples: u64,
+        ends_between: bool,
+    },
+    At(Vec<f64>),
 }
 
 impl Schedule {
@@ -23,12 +34,37 @@ impl Schedule {
         let whole = (quotient - nearest).abs() <= quotient * F256::from_f64(1e-60);
         let last = if whole { nearest } else { quotient.floor() };
         let multiples = last.to_f64() as u64 + 1;
-        Schedule { duration, interval, multiples, ends_between: !whole }
+        let grid = Grid::Uniform { interval, multiples, ends_between: !whole };
+        Schedule { duration, grid, adaptive: false }
     }
 
-    /// Number of samples.
+    /// The same run, sampled at exactly these times (s) and nowhere else: one or more, strictly
+    /// increasing, none negative, none beyond the duration rounded to a double.
+    pub fn at(self, times: Vec<f64>) -> Self {
+        let last = times.last().copied().unwrap_or(f64::NAN);
+        let within = times.first() >= Some(&0.0) && last <= self.duration.to_f64();
+        let increasing = times.windows(2).all(|pair| pair[0] < pair[1]);
+        assert!(within && increasing, "sample times increase from 0 to the duration");
+        Schedule { grid: Grid::At(times), adaptive: false, ..self }
+    }
+
+    /// The same, with samples at every event and peak, and between them wherever straight lines
+    /// would miss the force curves by more than 1 % of their peaks.
+    pub fn adaptive(self) -> Self {
+        Schedule { adaptive: true, ..self }
+    }
+
+    /// Whether samples are added where things happen.
+    pub fn is_adaptive(&self) -> bool {
+        self.adaptive
+    }
+
+    /// Number of samples, those added where things happen left out.
     pub fn len(&self) -> u64 {
-        self.multiples + u64::from(self.ends_between)
+        match &self.grid {
+            Grid::Uniform { multiples, ends_between, .. } => multiples + u64::from(*ends_between),
+            Grid::At(times) => times.len() as u64,
+        }
     }
 
     /// Whether there are no samples: never.
@@ -38,10 +74,14 @@ impl Schedule {
 
     /// Time of sample `k` (s).
     pub fn time<S: Scalar>(&self, k: u64) -> S {
-        S::from_octuple(match k < self.multiples {
-            true => F256::from(k) * self.interval,
-            false => self.duration,
-        })
+        match &self.grid {
+            Grid::Uniform { interval, multiples, .. } if k < *multiples => {
+                S::from_octuple(F256::from(k) * *interval)
+            }
+            Grid::Uniform { .. } => self.duration(),
+            // the duration, rounded to a double, may lie beyond itself
+            Grid::At(times) => S::from_f64(times[k as usize]).min(self.duration()),
+        }
     }
 
     /// Duration of the run (s).
@@ -84,5 +124,21 @@ mod tests {
     #[test]
     fn a_duration_shorter_than_the_interval_has_two_samples() {
         assert_eq!(schedule("1e-3", "1").len(), 2);
+    }
+
+    #[test]
+    fn times_of_ones_own_are_sampled_and_no_others() {
+        let schedule = schedule("0.3", "0.1").at(vec![0.05, 0.25]);
+        let times: Vec<f64> = (0..schedule.len()).map(|k| schedule.time(k)).collect();
+        assert_eq!(times, [0.05, 0.25]);
+        assert_eq!(schedule.duration::<f64>(), 0.3);
+    }
+
+    #[test]
+    fn no_sample_lies_beyond_the_duration_in_any_arithmetic() {
+        // the double nearest to 0.1 is larger than 0.1
+        let schedule = schedule("0.1", "0.1").at(vec![0.1]);
+        assert!(schedule.time::<F256>(0) <= schedule.duration());
+        assert_eq!(schedule.time::<f64>(0), 0.1);
     }
 }

@@ -10,7 +10,7 @@ mod dual;
 mod octuple;
 
 pub use decimal::{Decimal, NotADecimal};
-pub use dual::Dual64;
+pub use dual::{Dual, Dual64};
 pub use octuple::F256;
 
 use std::fmt::Debug;

@@ -8,13 +8,12 @@
 //!   back one at a time.
 
 use super::Error;
+use super::inverse;
+use super::shared::{Calls, Shared};
 use super::tolerance::{Norm, Weights};
 use super::vector_operations as operations;
-use crate::dae::{Dae, Direction, Fault, State};
-use nalgebra::DMatrixViewMut;
-use std::any::Any;
+use crate::dae::{Dae, Fault};
 use std::ffi::{CStr, c_char, c_int, c_long, c_void};
-use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::ptr;
 use std::slice;
 use sundials_sys::*;
@@ -101,37 +100,6 @@ impl<Y> Drop for SharedBox<Y> {
     }
 }
 
-/// Why a callback made IDA stop.
-enum Stop {
-    Fault { time: f64, fault: Fault },
-    Panic(Box<dyn Any + Send>),
-}
-
-/// What the callbacks work on.
-struct Shared<Y> {
-    system: Y,
-    weights: Weights,
-    /// Coordinates n and unknowns 2 n + m.
-    coordinates: usize,
-    unknowns: usize,
-    /// Which event functions are not watched.
-    off: Vec<bool>,
-    stop: Option<Stop>,
-    /// The last complaint that a shorter step might mend.
-    setback: Option<Fault>,
-    /// What IDA said last.
-    words: String,
-    calls: Calls,
-}
-
-/// How often IDA called back.
-#[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Calls {
-    pub(super) residuals: u64,
-    pub(super) jacobians: u64,
-    pub(super) roots: u64,
-}
-
 /// What IDA counted since it was last initialized.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Counters {
@@ -157,8 +125,8 @@ pub(super) enum Return {
 /// The fields stand in the order in which they must be freed.
 pub(super) struct Solver<Y: Dae> {
     memory: Memory,
-    _linear_solver: LinearSolver,
-    _matrix: Matrix,
+    linear_solver: LinearSolver,
+    matrix: Matrix,
     y: Vector,
     yp: Vector,
     between: Vector,
@@ -174,10 +142,8 @@ impl<Y: Dae> Solver<Y> {
         max_step: f64,
         stock_vector_operations: bool,
     ) -> Result<Self, Error> {
-        let (coordinates, norm) = (system.coordinates(), weights.norm());
-        let unknowns = 2 * coordinates + system.multipliers();
+        let (unknowns, norm) = (2 * system.coordinates() + system.multipliers(), weights.norm());
         let size = unknowns as sunindextype;
-        let off = vec![true; system.watches().len()];
         let context = new_context()?;
         let y = new_vector(unknowns, &context)?;
         override_operations(&y, norm, stock_vector_operations);
@@ -188,29 +154,17 @@ impl<Y: Dae> Solver<Y> {
         // SAFETY: vector, matrix and context are alive and of one size.
         let linear_solver = unsafe { SUNLinSol_Dense(y.0, matrix.0, context.0) };
         let linear_solver = LinearSolver(made(linear_solver, "a linear solver")?);
+        if !stock_vector_operations {
+            // SAFETY: a linear solver owns its table; nothing else refers to it.
+            let table = unsafe { &mut *(*linear_solver.0).ops };
+            table.setup = Some(invert);
+            table.solve = Some(multiply);
+        }
         // SAFETY: the context is alive.
         let memory = Memory(made(unsafe { IDACreate(context.0) }, "an integrator")?);
-        let shared = SharedBox(Box::into_raw(Box::new(Shared {
-            system,
-            weights,
-            coordinates,
-            unknowns,
-            off,
-            stop: None,
-            setback: None,
-            words: String::new(),
-            calls: Calls::default(),
-        })));
-        let mut solver = Solver {
-            memory,
-            _linear_solver: linear_solver,
-            _matrix: matrix,
-            y,
-            yp,
-            between,
-            shared,
-            _context: context,
-        };
+        let shared = SharedBox(Box::into_raw(Box::new(Shared::new(system, weights))));
+        let mut solver =
+            Solver { memory, linear_solver, matrix, y, yp, between, shared, _context: context };
         solver.set_up(max_step)?;
         Ok(solver)
     }
@@ -228,7 +182,7 @@ impl<Y: Dae> Solver<Y> {
                 IDAInit(ida, Some(residual::<Y>), 0.0, self.y.0, self.yp.0),
                 IDASetUserData(ida, shared.cast()),
                 IDAWFtolerances(ida, Some(weigh::<Y>)),
-                IDASetLinearSolver(ida, self._linear_solver.0, self._matrix.0),
+                IDASetLinearSolver(ida, self.linear_solver.0, self.matrix.0),
                 IDASetJacFn(ida, Some(jacobian::<Y>)),
                 IDASetMaxOrd(ida, 5),
                 IDASetMaxStep(ida, longest),
@@ -288,10 +242,7 @@ impl<Y: Dae> Solver<Y> {
     /// system's present modes.
     pub(super) fn reinitialize(&mut self, time: f64, first_step: f64) -> Result<(), Error> {
         let ida = self.memory.0;
-        let shared = self.shared_mut();
-        let directions = shared.system.watches().iter().map(|watch| watch.direction);
-        let mut signs: Vec<c_int> = directions.clone().map(sign).collect();
-        shared.off = directions.map(|direction| direction == Direction::Off).collect();
+        let mut signs = self.shared_mut().watch();
         if !signs.is_empty() {
             // SAFETY: IDA copies the signs, one for each root function that it knows of.
             let flag = unsafe { IDASetRootDirection(ida, signs.as_mut_ptr()) };
@@ -364,27 +315,13 @@ impl<Y: Dae> Solver<Y> {
 
     /// Turns a flag of IDA, returned at a time (s), into what stopped it; resumes a caught panic.
     fn check(&mut self, flag: c_int, time: f64) -> Result<(), Error> {
-        let shared = self.shared_mut();
-        if let Some(stop) = shared.stop.take() {
-            match stop {
-                Stop::Panic(payload) => resume_unwind(payload),
-                Stop::Fault { time, fault } => return Err(Error::System { time, source: fault }),
-            }
-        }
+        self.shared_mut().stopped()?;
         if flag >= 0 {
             return Ok(());
         }
+        let shared = self.shared_mut();
         let words = std::mem::take(&mut shared.words);
         Err(Error::stopped(flag, time, words, shared.setback.take()))
-    }
-}
-
-/// IDA's code for a direction; one that is off has a function that never passes zero.
-fn sign(direction: Direction) -> c_int {
-    match direction {
-        Direction::Rising => 1,
-        Direction::Falling => -1,
-        Direction::Off => 0,
     }
 }
 
@@ -579,7 +516,35 @@ unsafe extern "C" fn root_mean_square(x: N_Vector, w: N_Vector) -> f64 {
     unsafe { operations::root_mean_square(components(x), components(w)) }
 }
 
-/// Runs `f` for a callback: 0 done, 1 try a shorter step, −1 give up.
+/// Replaces the matrix by its inverse.
+unsafe extern "C" fn invert(_solver: SUNLinearSolver, matrix: SUNMatrix) -> c_int {
+    // SAFETY: IDA calls with the square dense matrix of `Solver::new`, and does not use it itself.
+    let regular = unsafe {
+        let n = SUNDenseMatrix_Columns(matrix) as usize;
+        let numbers = slice::from_raw_parts_mut(SUNDenseMatrix_Data(matrix), n * n);
+        inverse::invert(numbers, &mut vec![0; n], &mut vec![0.0; n])
+    };
+    if regular { SUNLS_SUCCESS as c_int } else { SUNLS_LUFACT_FAIL as c_int }
+}
+
+/// Solves with the inverse.
+unsafe extern "C" fn multiply(
+    _solver: SUNLinearSolver,
+    matrix: SUNMatrix,
+    x: N_Vector,
+    b: N_Vector,
+    _tolerance: f64,
+) -> c_int {
+    // SAFETY: as in `invert`, which was called before; the vectors are distinct and of its size.
+    unsafe {
+        let (x, b) = (components_mut(x), components(b));
+        let numbers = slice::from_raw_parts(SUNDenseMatrix_Data(matrix), b.len() * b.len());
+        inverse::multiply(numbers, b, x);
+    }
+    SUNLS_SUCCESS as c_int
+}
+
+/// Runs `f` for a callback and returns the flag that IDA expects.
 ///
 /// # Safety
 /// `user` is the `Shared<Y>` set by `Solver::new`, and nothing else refers to it meanwhile.
@@ -590,18 +555,7 @@ unsafe fn guard<Y: Dae>(
     f: impl FnOnce(&mut Shared<Y>) -> Result<(), Fault>,
 ) -> c_int {
     // SAFETY: the caller's contract.
-    let shared = unsafe { &mut *user.cast::<Shared<Y>>() };
-    let stop = match catch_unwind(AssertUnwindSafe(|| f(shared))) {
-        Ok(Ok(())) => return 0,
-        Ok(Err(fault @ Fault::TryShorterStep(_))) => {
-            shared.setback = Some(fault);
-            return 1;
-        }
-        Ok(Err(fault)) => Stop::Fault { time, fault },
-        Err(payload) => Stop::Panic(payload),
-    };
-    shared.stop = Some(stop);
-    -1
+    unsafe { &mut *user.cast::<Shared<Y>>() }.guard(time, f)
 }
 
 unsafe extern "C" fn residual<Y: Dae>(
@@ -614,11 +568,7 @@ unsafe extern "C" fn residual<Y: Dae>(
     // SAFETY: IDA hands back `user` and three distinct vectors, and calls back one at a time.
     unsafe {
         let (y, yp, residual) = (components(y), components(yp), components_mut(residual));
-        guard::<Y>(user, time, |shared| {
-            shared.calls.residuals += 1;
-            shared.system.residual(time, y, yp, residual)?;
-            finite(residual, "the equations of motion")
-        })
+        guard::<Y>(user, time, |shared| shared.residual(time, y, yp, residual))
     }
 }
 
@@ -638,14 +588,8 @@ unsafe extern "C" fn jacobian<Y: Dae>(
     // zeroed by IDA.
     unsafe {
         let (y, yp) = (components(y), components(yp));
-        let data = SUNDenseMatrix_Data(matrix);
-        guard::<Y>(user, time, |shared| {
-            shared.calls.jacobians += 1;
-            let n = shared.unknowns;
-            let columns = slice::from_raw_parts_mut(data, n * n);
-            let mut view = DMatrixViewMut::from_slice(columns, n, n);
-            shared.system.jacobian(time, y, yp, cj, &mut view)
-        })
+        let columns = slice::from_raw_parts_mut(SUNDenseMatrix_Data(matrix), y.len() * y.len());
+        guard::<Y>(user, time, |shared| shared.jacobian(time, y, yp, cj, columns))
     }
 }
 
@@ -660,27 +604,11 @@ unsafe extern "C" fn roots<Y: Dae>(
     // told of.
     unsafe {
         let y = components(y);
-        let flag = guard::<Y>(user, time, |shared| {
-            shared.calls.roots += 1;
+        guard::<Y>(user, time, |shared| {
             let values = slice::from_raw_parts_mut(values, shared.off.len());
-            let (q, v) = y[..2 * shared.coordinates].split_at(shared.coordinates);
-            shared.system.event_values(State { time, q, v, turns: None }, values)?;
-            values.iter_mut().zip(&shared.off).filter(|(_, off)| **off).for_each(|(g, _)| *g = 1.0);
-            finite(values, "an event function")
-        });
-        if flag > 0 { roots_failed::<Y>(user, time) } else { flag }
+            shared.roots(time, y, values)
+        })
     }
-}
-
-/// IDA knows no shorter step when a root function fails: makes a complaint final.
-///
-/// # Safety
-/// That of [`guard`].
-unsafe fn roots_failed<Y: Dae>(user: *mut c_void, time: f64) -> c_int {
-    // SAFETY: the caller's contract.
-    let shared = unsafe { &mut *user.cast::<Shared<Y>>() };
-    shared.stop = shared.setback.take().map(|fault| Stop::Fault { time, fault });
-    -1
 }
 
 unsafe extern "C" fn weigh<Y: Dae>(y: N_Vector, weights: N_Vector, user: *mut c_void) -> c_int {
@@ -714,13 +642,4 @@ unsafe extern "C" fn handle_error<Y: Dae>(
             Ok(())
         });
     }
-}
-
-/// An error if one of these numbers is not finite.
-#[inline(always)]
-fn finite(numbers: &[f64], what: &str) -> Result<(), Fault> {
-    if numbers.iter().fold(true, |finite, x| finite & x.is_finite()) {
-        return Ok(());
-    }
-    Err(Fault::TryShorterStep(format!("{what} gave a number that is not finite")))
 }

@@ -344,6 +344,22 @@ fn a_ball_rebounds_from_a_wall_by_the_closed_form_of_its_law() {
     assert_eq!(engine.now().integrals, end.integrals);
 }
 
+#[test]
+fn a_contact_that_begins_at_zero_depth_exactly_ends_once() {
+    let mut engine = engine(Ball { stiffness: 1e10, damping: 0.0, impact_rate: Some(2.0) });
+    engine.restart(&snapshot(0.0, &[0.0], &[2.0], &[0.0])).unwrap();
+    assert_eq!(advance(&mut engine, 1e-2).unwrap(), Advance::Event);
+    // Hertz: (n + 1) v² / (2 K) = δ_max^(n + 1), and the duration is 2.943275 δ_max / v.
+    let deepest = (2.5 * 2.0_f64.powi(2) / (2.0 * 1e10)).powf(0.4);
+    let duration = 2.943_275_184_324_3 * deepest / 2.0;
+    let end = engine.now().clone();
+    assert!((end.time / duration - 1.0).abs() < 1e4 * RTOL, "{} {duration}", end.time);
+    assert!((end.v[0] / -2.0 - 1.0).abs() < 1e4 * RTOL, "{}", end.v[0]);
+    engine.system().switch(|ball| ball.impact_rate = None);
+    engine.restart(&Snapshot { q: vec![0.0], ..end }).unwrap();
+    assert_eq!(advance(&mut engine, 1e-2).unwrap(), Advance::Stepped);
+}
+
 /// A free mass whose force does what a test wants.
 struct Free<F>(F);
 
@@ -382,6 +398,7 @@ fn a_panic_in_the_system_comes_back_whole_from_the_step() {
     engine.restart(&snapshot(0.0, &[0.0], &[1.0], &[])).unwrap();
     let caught = catch_unwind(AssertUnwindSafe(|| advance(&mut engine, 1.0))).unwrap_err();
     assert_eq!(caught.downcast_ref::<String>().unwrap(), "no force is known after 0.5 s");
+    assert!(matches!(engine.step(1.0), Err(Error::NotStarted)));
 }
 
 #[derive(Debug, thiserror::Error)]

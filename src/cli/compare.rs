@@ -1,0 +1,98 @@
+//! `freeplay compare THEIRS REFERENCE`
+
+use super::Failure;
+use crate::compare::{self, Comparison, Map, Request};
+use crate::run::Progress;
+use indicatif::{ProgressBar, ProgressStyle};
+use std::ops::ControlFlow;
+use std::path::PathBuf;
+
+/// Most digits that can be required: doubles carry hardly more.
+const MOST_REQUIRED: f64 = 15.0;
+
+/// Arguments of `compare`.
+#[derive(Debug, clap::Args)]
+pub struct Arguments {
+    /// Trajectory that is judged: a result file, CSV, MATLAB 7.3 or other HDF5.
+    theirs: PathBuf,
+    /// Trajectory that it is judged by: a result file, or a table with the times of the first.
+    reference: PathBuf,
+    /// Print JSON.
+    #[arg(long)]
+    json: bool,
+    /// Fail with exit code 1 where fewer digits agree.
+    #[arg(long, value_name = "N")]
+    require_digits: Option<f64>,
+    /// Look no further than this time (s).
+    #[arg(long, value_name = "T")]
+    until: Option<f64>,
+    /// Which column of another program is which of ours: phi3=angle.coupler, t[ms]=time.
+    #[arg(long, value_name = "THEIRS=OURS")]
+    map: Vec<Map>,
+    /// Look at forces and torques too, and have them count.
+    #[arg(long)]
+    forces: bool,
+    /// Look only at times that both files hold; never run the reference's case again.
+    #[arg(long)]
+    common_times: bool,
+}
+
+/// An argument out of its range.
+#[derive(Debug, thiserror::Error)]
+enum OutOfRange {
+    #[error("--require-digits must be greater than 0 and at most {MOST_REQUIRED}, is {0}")]
+    Digits(f64),
+    #[error("--until must be a time of 0 s or later, is {0}")]
+    Until(f64),
+}
+
+/// Holds a trajectory against a reference, and tells how far they agree.
+pub(super) fn compare(arguments: &Arguments) -> Result<(), Failure> {
+    arguments.check().map_err(Failure::input)?;
+    let request = Request {
+        until: arguments.until,
+        forces: arguments.forces,
+        common_times: arguments.common_times,
+        maps: &arguments.map,
+    };
+    let bar = ProgressBar::no_length();
+    let style = ProgressStyle::with_template("{spinner} {msg}");
+    bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_spinner()));
+    let mut watch = |progress: &Progress| {
+        bar.set_message(format!("the reference's case is at {:.6} s", progress.time));
+        bar.tick();
+        ControlFlow::Continue(())
+    };
+    let compared = Comparison::new(&arguments.theirs, &arguments.reference, &request, &mut watch);
+    bar.finish_and_clear();
+    let comparison = compared.map_err(failure)?;
+    match arguments.json {
+        true => super::print(format_args!("{:#}\n", comparison.json(arguments.require_digits))),
+        false => super::print(&comparison),
+    }
+    match arguments.require_digits.and_then(|digits| comparison.shortfall(digits)) {
+        None => Ok(()),
+        Some(shortfall) => Err(Failure::with(1, shortfall)),
+    }
+}
+
+impl Arguments {
+    fn check(&self) -> Result<(), OutOfRange> {
+        match (self.require_digits, self.until) {
+            (Some(digits), _) if !(digits > 0.0 && digits <= MOST_REQUIRED) => {
+                Err(OutOfRange::Digits(digits))
+            }
+            (_, Some(until)) if !(until >= 0.0 && until.is_finite()) => {
+                Err(OutOfRange::Until(until))
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+/// What cannot be simulated is 4, anything else bad input.
+fn failure(error: compare::Error) -> Failure {
+    let simulation =
+        matches!(error, compare::Error::Again { .. } | compare::Error::NotReproduced { .. });
+    Failure::with(if simulation { 4 } else { 2 }, error)
+}

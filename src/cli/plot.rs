@@ -1,0 +1,176 @@
+//! `freeplay plot FILE… -o DIR`
+
+use super::Failure;
+use crate::figure::{self, Figure, Format, Options, Over};
+use crate::record::ResultFile;
+use std::fs::{self, OpenOptions};
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+/// Arguments of `plot`.
+#[derive(Debug, clap::Args)]
+pub struct Arguments {
+    /// Result files (HDF5); one without clearances is drawn dashed beside the others.
+    #[arg(value_name = "FILE", required = true)]
+    files: Vec<PathBuf>,
+    /// Folder for the figures; made if it is missing.
+    #[arg(short, long, value_name = "DIR")]
+    output: PathBuf,
+    /// Kind of files; several with commas between.
+    #[arg(long, value_enum, value_delimiter = ',', default_value = "svg")]
+    format: Vec<FormatName>,
+    /// What histories are drawn over.
+    #[arg(long, value_enum, default_value = "time")]
+    over: OverName,
+    /// The drive whose angle counts; default: the first.
+    #[arg(long, value_name = "NAME")]
+    drive: Option<String>,
+    /// Draw from this time on (s).
+    #[arg(long, value_name = "T", value_parser = finite, allow_negative_numbers = true)]
+    from: Option<f64>,
+    /// Draw until this time (s).
+    #[arg(long, value_name = "T", value_parser = finite, allow_negative_numbers = true)]
+    until: Option<f64>,
+    /// Drive angle of the Poincaré section (degrees).
+    #[arg(long, value_name = "ANGLE", value_parser = finite, default_value = "0", allow_negative_numbers = true)]
+    section: f64,
+    /// Width of the figures (mm); default: 90, the width of a journal's column, or 190, of both.
+    #[arg(long, value_name = "MM", value_parser = width)]
+    width: Option<f64>,
+    /// Replace figures that exist.
+    #[arg(long)]
+    force: bool,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum FormatName {
+    /// Scalable Vector Graphics.
+    Svg,
+    /// Portable Network Graphics, 300 dots per inch.
+    Png,
+    /// Portable Document Format.
+    Pdf,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum OverName {
+    /// Time.
+    Time,
+    /// The angle of a drive.
+    Angle,
+}
+
+fn finite(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(value) if f64::is_finite(value) => Ok(value),
+        _ => Err("it must be a number".to_owned()),
+    }
+}
+
+fn width(text: &str) -> Result<f64, String> {
+    match finite(text) {
+        Ok(width) if (40.0..=1000.0).contains(&width) => Ok(width),
+        _ => Err("it must be a number from 40 to 1000 (mm)".to_owned()),
+    }
+}
+
+/// Why figures could not be written.
+#[derive(Debug, thiserror::Error)]
+enum PlotError {
+    #[error("{} exists; --force replaces it", path.display())]
+    Exists { path: PathBuf },
+    #[error("cannot {attempt} {}", path.display())]
+    System { attempt: &'static str, path: PathBuf, source: io::Error },
+    #[error("cannot draw {}", path.display())]
+    Encode { path: PathBuf, source: figure::EncodeError },
+}
+
+/// Draws the figures of result files.
+pub(super) fn plot(arguments: &Arguments) -> Result<(), Failure> {
+    let files = arguments.files.iter().map(|path| ResultFile::open(path));
+    let files = files.collect::<Result<Vec<_>, _>>().map_err(Failure::input)?;
+    let figures = figure::draw(files, &options(arguments)).map_err(Failure::input)?;
+    let formats = formats(arguments);
+    let written = write(&figures, &formats, &arguments.output, arguments.force);
+    let written = written.map_err(Failure::output)?;
+    let (count, folder) = (figures.len(), arguments.output.display());
+    super::print(format_args!("{folder}: {count} figures, {written} files\n"));
+    Ok(())
+}
+
+fn options(arguments: &Arguments) -> Options {
+    Options {
+        over: match arguments.over {
+            OverName::Time => Over::Time,
+            OverName::Angle => Over::Angle,
+        },
+        drive: arguments.drive.clone(),
+        from: arguments.from,
+        until: arguments.until,
+        section: arguments.section.to_radians(),
+        width: arguments.width,
+    }
+}
+
+/// The formats asked for, each once.
+fn formats(arguments: &Arguments) -> Vec<Format> {
+    let asked = |name| arguments.format.contains(&name);
+    let all = [
+        (FormatName::Svg, Format::Svg),
+        (FormatName::Png, Format::Png),
+        (FormatName::Pdf, Format::Pdf),
+    ];
+    all.into_iter().filter(|(name, _)| asked(*name)).map(|(_, format)| format).collect()
+}
+
+/// Writes every figure in every format; says how many files that were. Nothing is written if a
+/// file that must stay is in the way.
+fn write(
+    figures: &[Figure],
+    formats: &[Format],
+    folder: &Path,
+    force: bool,
+) -> Result<usize, PlotError> {
+    fs::create_dir_all(folder).map_err(|source| {
+        let path = folder.to_owned();
+        PlotError::System { attempt: "make the folder", path, source }
+    })?;
+    let path = |figure: &Figure, format: Format| {
+        folder.join(format!("{}.{}", figure.name, format.ending()))
+    };
+    let files: Vec<(&Figure, Format, PathBuf)> = figures
+        .iter()
+        .flat_map(|figure| formats.iter().map(move |format| (figure, *format)))
+        .map(|(figure, format)| (figure, format, path(figure, format)))
+        .collect();
+    let taken = files.iter().find(|(_, _, path)| !force && fs::symlink_metadata(path).is_ok());
+    if let Some((_, _, path)) = taken {
+        return Err(PlotError::Exists { path: path.clone() });
+    }
+    for (figure, format, path) in &files {
+        let encoded = figure.encode(*format);
+        let bytes = encoded.map_err(|source| PlotError::Encode { path: path.clone(), source })?;
+        write_file(path, &bytes).map_err(|source| PlotError::System {
+            attempt: "write",
+            path: path.clone(),
+            source,
+        })?;
+    }
+    Ok(files.len())
+}
+
+/// Writes a file under a temporary name beside it and renames it, so that it is whole or not there.
+fn write_file(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let temporary = path.with_file_name(format!(".{name}.partial-{}", std::process::id()));
+    let written = OpenOptions::new()
+        .write(true)
+        .create_new(true)
+        .open(&temporary)
+        .and_then(|mut file| file.write_all(bytes))
+        .and_then(|()| fs::rename(&temporary, path));
+    if written.is_err() {
+        let _ = fs::remove_file(&temporary);
+    }
+    written
+}

@@ -1,0 +1,111 @@
+//! Histories: a panel for each run, one under the other, the ideal mechanism dashed in each.
+
+use super::Over;
+use super::decimate::Point;
+use super::palette::{IDEAL, RUN};
+use super::panel::{Axis, Choice, Mark, Panel, Sample, range_of, with_room, zero_line};
+use super::quantity::Unit;
+use super::runs::{Run, Runs};
+use super::sheet::{DOUBLE_COLUMN, Height, Sheet};
+use super::text::Text;
+
+/// Most panels under each other.
+pub(super) const MOST_ROWS: usize = 6;
+
+/// A curve and the name of its run.
+#[derive(Debug, Clone)]
+pub(super) struct Curve {
+    /// Name of the run.
+    pub run: String,
+    /// Its points.
+    pub points: Vec<Point>,
+}
+
+impl Curve {
+    /// Values at the samples of a run.
+    pub fn of(run: &Run, values: Vec<f64>) -> Self {
+        let points = run.abscissa().iter().copied().zip(values).map(|(x, y)| [x, y]).collect();
+        Curve { run: run.name.clone(), points }
+    }
+}
+
+/// The horizontal axis of histories.
+pub(super) fn time_axis(runs: &Runs, over: Over) -> Axis {
+    let range = runs.range();
+    match over {
+        Over::Time => {
+            let largest = range[0].abs().max(range[1].abs());
+            let unit = Unit::fitting("s", largest);
+            let title = Text::roman("Time, ").and_italic("t");
+            Axis { title, unit, range, ticks: Choice::Decimal }
+        }
+        Over::Angle => {
+            let title = format!("Angle of drive {}, ", runs.drive().unwrap_or_default());
+            let title = Text::roman(title).and_italic("φ");
+            Axis { title, unit: Unit::degrees(), range, ticks: Choice::Degrees }
+        }
+    }
+}
+
+/// Panels of one quantity, a run each, with the ideal mechanism's curve in all of them. All have
+/// the same axes, so that heights compare.
+pub(super) fn stack(
+    x: &Axis,
+    title: &Text,
+    unit: &str,
+    curves: &[Curve],
+    ideal: Option<&Curve>,
+) -> Vec<Sheet> {
+    let everything = curves.iter().chain(ideal).flat_map(|curve| &curve.points);
+    let range = with_room(range_of(everything.map(|point| point[1])));
+    let largest = range[0].abs().max(range[1].abs());
+    let y = Axis {
+        title: title.clone(),
+        unit: Unit::fitting(unit, largest),
+        range,
+        ticks: Choice::Decimal,
+    };
+    let panel = |curve: &Curve| {
+        let mut marks: Vec<Mark> = zero_line(range).into_iter().collect();
+        marks.push(Mark::Curve(curve.points.clone(), RUN));
+        marks.extend(ideal.map(|ideal| Mark::Curve(ideal.points.clone(), IDEAL)));
+        Panel {
+            label: Text::roman(&curve.run),
+            legend: Vec::new(),
+            x: x.clone(),
+            y: y.clone(),
+            marks,
+        }
+    };
+    let legend = ideal.map(|ideal| (Sample::Line(IDEAL), Text::roman(&ideal.run)));
+    let page = |curves: &[Curve]| {
+        let mut panels: Vec<Panel> = curves.iter().map(panel).collect();
+        if let Some(first) = panels.first_mut() {
+            first.legend = legend.clone().into_iter().collect();
+        }
+        column(panels)
+    };
+    curves.chunks(MOST_ROWS).map(page).collect()
+}
+
+/// Panels under each other over one horizontal axis.
+pub(super) fn column(mut panels: Vec<Panel>) -> Sheet {
+    letter(panels.iter_mut());
+    let height = if panels.len() == 1 { 130.0 } else { 88.0 };
+    Sheet {
+        width: DOUBLE_COLUMN,
+        heights: vec![Height::Points(height); panels.len()],
+        rows: panels.into_iter().map(|panel| vec![Some(panel)]).collect(),
+        shared_x: true,
+    }
+}
+
+/// Puts (a), (b), (c) before the labels of several panels.
+pub(super) fn letter<'a>(panels: impl ExactSizeIterator<Item = &'a mut Panel>) {
+    if panels.len() < 2 {
+        return;
+    }
+    for (panel, letter) in panels.zip('a'..='z') {
+        panel.label = Text::roman(format!("({letter})  ")).and_text(&panel.label);
+    }
+}

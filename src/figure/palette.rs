@@ -1,0 +1,32 @@
+//! Colours and line widths.
+//!
+//! Okabe and Ito's colours, which the colour-blind tell apart ("Color Universal Design", 2008);
+//! curves that share a panel differ in width or dashes too, so that they part in grey print.
+
+use super::svg::Stroke;
+
+/// Black.
+pub(super) const BLACK: &str = "#000";
+/// Blue.
+pub(super) const BLUE: &str = "#0072b2";
+/// Vermillion.
+pub(super) const VERMILLION: &str = "#d55e00";
+/// Bluish green.
+pub(super) const GREEN: &str = "#009e73";
+/// Orange.
+pub(super) const ORANGE: &str = "#e69f00";
+/// Reddish purple.
+pub(super) const PURPLE: &str = "#cc79a7";
+/// Sky blue.
+pub(super) const SKY: &str = "#56b4e9";
+/// Grey of lines that only guide the eye.
+pub(super) const GREY: &str = "#999";
+
+/// Frames and ticks.
+pub(super) const FRAME: Stroke = Stroke::solid(BLACK, 0.5);
+/// Lines that only guide the eye.
+pub(super) const GUIDE: Stroke = Stroke::solid(GREY, 0.4);
+/// The curve of a run.
+pub(super) const RUN: Stroke = Stroke::solid(BLUE, 0.7);
+/// The ideal mechanism.
+pub(super) const IDEAL: Stroke = Stroke::dashed(BLACK, 0.9);

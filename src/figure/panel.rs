@@ -1,0 +1,364 @@
+//! One panel of a figure: a frame, two axes, and what is drawn between them.
+
+use super::decimate::{Point, by_columns, by_distance};
+use super::palette::{BLACK, FRAME};
+use super::quantity::Unit;
+use super::svg::{Anchor, Stroke, Svg};
+use super::text::Text;
+use super::ticks::Ticks;
+
+/// Size of the labels of ticks, and of legends (pt).
+pub(super) const SMALL_TYPE: f64 = 8.0;
+/// Size of titles (pt).
+pub(super) const TYPE: f64 = 9.0;
+/// Length of a major tick (pt).
+const MAJOR: f64 = 3.6;
+/// Length of a minor tick (pt).
+const MINOR: f64 = 2.0;
+/// Distance of labels from the frame (pt).
+pub(super) const LABEL_GAP: f64 = 3.0;
+/// Columns of the picture in a point of width.
+const COLUMNS_PER_POINT: f64 = 2.0;
+/// How far a drawn path may be from the true one (pt).
+const TOLERANCE: f64 = 0.02;
+/// How far the baseline lies below the middle of a digit (em).
+pub(super) const MIDDLE: f64 = 0.35;
+
+/// An axis.
+#[derive(Debug, Clone)]
+pub(super) struct Axis {
+    /// What it shows, without the unit.
+    pub title: Text,
+    /// The unit of its labels.
+    pub unit: Unit,
+    /// Its ends, in SI units.
+    pub range: [f64; 2],
+    /// How its ticks are chosen.
+    pub ticks: Choice,
+}
+
+/// How the ticks of an axis are chosen.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Choice {
+    /// Round numbers.
+    Decimal,
+    /// Angles that people count in.
+    Degrees,
+    /// Whole numbers only have labels: names at 0, 1, 2 …, from the top down.
+    Names(Vec<String>),
+}
+
+impl Axis {
+    /// The title with its unit.
+    pub fn full_title(&self) -> Text {
+        self.unit.behind(self.title.clone())
+    }
+
+    /// Ticks that suit a length on the page (pt), `spacing` apart at least.
+    pub fn ticks(&self, length: f64, spacing: f64) -> Ticks {
+        let range = self.range.map(|end| end / self.unit.size);
+        let most = (length / spacing) as usize + 1;
+        match &self.ticks {
+            Choice::Decimal => Ticks::decimal(range, most),
+            Choice::Degrees => Ticks::degrees(range, most),
+            Choice::Names(_) => Ticks::default(),
+        }
+    }
+}
+
+/// Something drawn in a panel, in SI units of its axes.
+#[derive(Debug, Clone)]
+pub(super) enum Mark {
+    /// A curve over the horizontal axis.
+    Curve(Vec<Point>, Stroke),
+    /// A path that may go anywhere.
+    Path(Vec<Point>, Stroke),
+    /// Separate points.
+    Dots(Vec<Point>, Dot),
+    /// A circle about the origin.
+    Circle(f64, Stroke),
+    /// Bars from one place on the horizontal axis to another, in a row of names.
+    Bars(Vec<[f64; 2]>, usize, &'static str),
+    /// A line at a height.
+    Level(f64, Stroke),
+    /// A line at a place on the horizontal axis.
+    Upright(f64, Stroke),
+}
+
+/// How a point is drawn.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Dot {
+    /// Radius (pt).
+    pub radius: f64,
+    /// Colour.
+    pub colour: &'static str,
+}
+
+/// What an entry of a legend shows beside its words.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Sample {
+    /// A line.
+    Line(Stroke),
+    /// A point.
+    Dot(Dot),
+    /// A bar.
+    Bar(&'static str),
+}
+
+/// A panel.
+#[derive(Debug, Clone)]
+pub(super) struct Panel {
+    /// What it shows, over its upper left corner.
+    pub label: Text,
+    /// Entries of the legend, over its upper right corner.
+    pub legend: Vec<(Sample, Text)>,
+    /// Horizontal axis.
+    pub x: Axis,
+    /// Vertical axis.
+    pub y: Axis,
+    /// What is drawn.
+    pub marks: Vec<Mark>,
+}
+
+/// Where a panel's frame is on the page (pt).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Frame {
+    /// Left upper corner.
+    pub corner: Point,
+    /// Width and height.
+    pub size: [f64; 2],
+}
+
+/// Which words stand beside a panel's frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Words {
+    /// Labels of the horizontal ticks.
+    pub x_labels: bool,
+    /// Title of the horizontal axis.
+    pub x_title: bool,
+    /// Title of the vertical axis.
+    pub y_title: bool,
+}
+
+/// Distances of major ticks that leave room for labels: across and down (pt).
+const SPACING: [f64; 2] = [38.0, 19.0];
+
+impl Panel {
+    /// Width of the vertical axis' labels for a frame of this height (pt).
+    pub fn label_width(&self, height: f64) -> f64 {
+        let widest = |labels: &[String]| {
+            let widths = labels.iter().map(|label| Text::roman(label).width(SMALL_TYPE));
+            widths.fold(0.0, f64::max)
+        };
+        match &self.y.ticks {
+            Choice::Names(names) => widest(names),
+            _ => widest(&self.y.ticks(height, SPACING[1]).labels),
+        }
+    }
+
+    /// Width of the legend (pt).
+    pub fn legend_width(&self) -> f64 {
+        self.legend.iter().map(|(_, words)| entry_width(words)).sum::<f64>()
+    }
+
+    /// Draws the panel. `title_at` is how far left of the frame the vertical axis' title stands.
+    pub fn draw(&self, svg: &mut Svg, frame: Frame, words: Words, title_at: f64) {
+        for mark in &self.marks {
+            self.draw_mark(svg, frame, mark);
+        }
+        let [left, top] = frame.corner;
+        let [right, bottom] = [left + frame.size[0], top + frame.size[1]];
+        svg.frame([left, top], [right, bottom], &FRAME);
+        self.draw_x(svg, frame, words);
+        self.draw_y(svg, frame);
+        let (middle, down) = (0.5 * (left + right), 0.5 * (top + bottom));
+        if words.x_title {
+            let line = bottom + LABEL_GAP + SMALL_TYPE + 0.35 * TYPE + 0.75 * TYPE;
+            svg.text([middle, line], Anchor::Middle, TYPE, &self.x.full_title());
+        }
+        if words.y_title {
+            svg.text_upwards([left - title_at, down], Anchor::Middle, TYPE, &self.y.full_title());
+        }
+    }
+
+    fn draw_x(&self, svg: &mut Svg, frame: Frame, words: Words) {
+        let ticks = self.x.ticks(frame.size[0], SPACING[0]);
+        let [top, bottom] = [frame.corner[1], frame.corner[1] + frame.size[1]];
+        let place = |tick: &f64| self.across(frame, tick * self.x.unit.size);
+        let both = |places: &[f64], length: f64| -> Vec<[Point; 2]> {
+            let lines = places
+                .iter()
+                .map(place)
+                .flat_map(|x| [[[x, bottom], [x, bottom - length]], [[x, top], [x, top + length]]]);
+            lines.collect()
+        };
+        svg.lines(both(&ticks.major, MAJOR).into_iter().chain(both(&ticks.minor, MINOR)), &FRAME);
+        if words.x_labels {
+            let line = bottom + LABEL_GAP + 0.75 * SMALL_TYPE;
+            for (tick, label) in ticks.major.iter().zip(&ticks.labels) {
+                svg.text([place(tick), line], Anchor::Middle, SMALL_TYPE, &Text::roman(label));
+            }
+        }
+    }
+
+    fn draw_y(&self, svg: &mut Svg, frame: Frame) {
+        let [left, right] = [frame.corner[0], frame.corner[0] + frame.size[0]];
+        let mut label = |y: f64, label: &String| {
+            let at = [left - LABEL_GAP, y + MIDDLE * SMALL_TYPE];
+            svg.text(at, Anchor::End, SMALL_TYPE, &Text::roman(label));
+        };
+        if let Choice::Names(names) = &self.y.ticks {
+            for (row, name) in names.iter().enumerate() {
+                label(self.down(frame, row as f64), name);
+            }
+            return;
+        }
+        let ticks = self.y.ticks(frame.size[1], SPACING[1]);
+        let place = |tick: &f64| self.down(frame, tick * self.y.unit.size);
+        for (tick, words) in ticks.major.iter().zip(&ticks.labels) {
+            label(place(tick), words);
+        }
+        let both = |places: &[f64], length: f64| -> Vec<[Point; 2]> {
+            let lines = places
+                .iter()
+                .map(place)
+                .flat_map(|y| [[[left, y], [left + length, y]], [[right, y], [right - length, y]]]);
+            lines.collect()
+        };
+        svg.lines(both(&ticks.major, MAJOR).into_iter().chain(both(&ticks.minor, MINOR)), &FRAME);
+    }
+
+    fn draw_mark(&self, svg: &mut Svg, frame: Frame, mark: &Mark) {
+        let [left, top] = frame.corner;
+        let [right, bottom] = [left + frame.size[0], top + frame.size[1]];
+        let place = |[x, y]: &Point| [self.across(frame, *x), self.down(frame, *y)];
+        let placed = |points: &[Point]| -> Vec<Point> { points.iter().map(place).collect() };
+        match mark {
+            Mark::Curve(points, stroke) => {
+                let columns = by_columns(&placed(points), 1.0 / COLUMNS_PER_POINT);
+                svg.path(&by_distance(&columns, TOLERANCE), stroke);
+            }
+            Mark::Path(points, stroke) => {
+                svg.path(&by_distance(&placed(points), TOLERANCE), stroke);
+            }
+            Mark::Dots(points, dot) => {
+                let finite = placed(points).into_iter().filter(|[x, y]| (x + y).is_finite());
+                svg.discs(finite, dot.radius, dot.colour);
+            }
+            Mark::Circle(radius, stroke) => {
+                let edge = self.across(frame, *radius) - self.across(frame, 0.0);
+                svg.circle(place(&[0.0, 0.0]), edge, stroke);
+            }
+            Mark::Bars(bars, row, colour) => self.draw_bars(svg, frame, bars, *row, colour),
+            Mark::Level(height, stroke) => {
+                let y = self.down(frame, *height);
+                svg.lines([[[left, y], [right, y]]], stroke);
+            }
+            Mark::Upright(place, stroke) => {
+                let x = self.across(frame, *place);
+                svg.lines([[[x, top], [x, bottom]]], stroke);
+            }
+        }
+    }
+
+    /// Bars that touch on the page become one; none is narrower than a hair, so that none is lost.
+    fn draw_bars(
+        &self,
+        svg: &mut Svg,
+        frame: Frame,
+        bars: &[[f64; 2]],
+        row: usize,
+        colour: &'static str,
+    ) {
+        const HAIR: f64 = 0.2;
+        const HALF: f64 = 0.32;
+        let [top, bottom] = [row as f64 - HALF, row as f64 + HALF].map(|y| self.down(frame, y));
+        let mut drawn: Vec<[f64; 2]> = Vec::new();
+        for bar in bars {
+            let [from, to] = bar.map(|x| self.across(frame, x));
+            let to = to.max(from + HAIR);
+            match drawn.last_mut() {
+                Some(last) if from <= last[1] + 0.02 => last[1] = last[1].max(to),
+                _ => drawn.push([from, to]),
+            }
+        }
+        svg.rectangles(drawn.into_iter().map(|[from, to]| [[from, top], [to, bottom]]), colour);
+    }
+
+    /// Where a value of the horizontal axis is on the page (pt).
+    fn across(&self, frame: Frame, x: f64) -> f64 {
+        let [low, high] = self.x.range;
+        frame.corner[0] + frame.size[0] * (x - low) / (high - low)
+    }
+
+    /// Where a value of the vertical axis is on the page (pt).
+    fn down(&self, frame: Frame, y: f64) -> f64 {
+        let [low, high] = self.y.range;
+        frame.corner[1] + frame.size[1] * (high - y) / (high - low)
+    }
+
+    /// Draws the legend so that it ends at a point.
+    pub fn draw_legend(&self, svg: &mut Svg, [end, line]: Point) {
+        let mut x = end - self.legend_width();
+        for (sample, words) in &self.legend {
+            let y = line - MIDDLE * SMALL_TYPE;
+            let from = x + LEGEND_GAP;
+            let to = from + SAMPLE;
+            match sample {
+                Sample::Line(stroke) => svg.lines([[[from, y], [to, y]]], stroke),
+                Sample::Dot(dot) => svg.discs([[0.5 * (from + to), y]], dot.radius, dot.colour),
+                Sample::Bar(colour) => {
+                    svg.rectangles([[[from, y - 2.5], [to, y + 2.5]]], colour);
+                }
+            }
+            svg.text([to + SAMPLE_GAP, line], Anchor::Start, SMALL_TYPE, words);
+            x += entry_width(words);
+        }
+    }
+
+    /// Draws the label so that it begins at a point.
+    pub fn draw_label(&self, svg: &mut Svg, at: Point) {
+        svg.text(at, Anchor::Start, SMALL_TYPE, &self.label);
+    }
+}
+
+/// Length of a line beside the words of a legend (pt).
+const SAMPLE: f64 = 15.0;
+/// Distance of the words from it (pt).
+const SAMPLE_GAP: f64 = 3.0;
+/// Distance between entries (pt).
+const LEGEND_GAP: f64 = 9.0;
+
+fn entry_width(words: &Text) -> f64 {
+    LEGEND_GAP + SAMPLE + SAMPLE_GAP + words.width(SMALL_TYPE)
+}
+
+/// The line at zero, where an axis has both signs.
+pub(super) fn zero_line([low, high]: [f64; 2]) -> Option<Mark> {
+    (low < 0.0 && high > 0.0).then_some(Mark::Level(0.0, Stroke::solid("#bbb", 0.4)))
+}
+
+/// The range of values, those that are not finite left out; `None` if nothing is left.
+pub(super) fn range_of(values: impl IntoIterator<Item = f64>) -> Option<[f64; 2]> {
+    values.into_iter().filter(|value| value.is_finite()).fold(None, |range, value| {
+        let [low, high] = range.unwrap_or([value, value]);
+        Some([low.min(value), high.max(value)])
+    })
+}
+
+/// A range with room about it, a twentieth of it each side; an end at zero stays there, and a
+/// range without width gets some.
+pub(super) fn with_room(range: Option<[f64; 2]>) -> [f64; 2] {
+    let [low, high] = range.unwrap_or([0.0, 1.0]);
+    if high - low <= 1e-12 * low.abs().max(high.abs()) {
+        let room = if low == 0.0 { 1.0 } else { 0.1 * low.abs() };
+        return if low == 0.0 { [0.0, 1.0] } else { [low - room, high + room] };
+    }
+    let room = 0.05 * (high - low);
+    [if low == 0.0 { 0.0 } else { low - room }, if high == 0.0 { 0.0 } else { high + room }]
+}
+
+/// A stroke's colour is black by default.
+pub(super) const fn thin_black() -> Stroke {
+    Stroke::solid(BLACK, 0.5)
+}

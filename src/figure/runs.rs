@@ -1,0 +1,273 @@
+//! The runs that are drawn: their samples, events and names, and the axis they are drawn over.
+
+use super::{Error, Options, Over};
+use crate::case::{Case, Changes};
+use crate::model::did_you_mean;
+use crate::record::{Dimension, ResultFile, Table};
+use crate::run::{Contact, Event, Peak};
+use std::ops::Range;
+use std::path::PathBuf;
+
+/// A run, read as far as several figures need it.
+#[derive(Debug)]
+pub(super) struct Run {
+    file: ResultFile,
+    /// What it is called in the figures.
+    pub name: String,
+    /// Times of the samples drawn (s).
+    pub times: Vec<f64>,
+    /// Angle of its drive at these times; `None` without a drive.
+    pub drive: Option<DriveAngle>,
+    /// All events.
+    pub events: Vec<Event>,
+    /// All contacts.
+    pub contacts: Vec<Contact>,
+    /// All local maxima of normal forces.
+    pub peaks: Vec<Peak>,
+    window: Range<usize>,
+    over: Over,
+}
+
+/// The angle of a drive over time.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct DriveAngle {
+    /// Name of the drive.
+    pub name: String,
+    /// Angle of the second body relative to the first at each sample drawn (rad).
+    pub angles: Vec<f64>,
+}
+
+impl Run {
+    fn read(file: ResultFile, options: &Options) -> Result<Self, Error> {
+        let path = || file.path().to_owned();
+        let all = file.times()?;
+        let from = options.from.unwrap_or(f64::NEG_INFINITY);
+        let until = options.until.unwrap_or(f64::INFINITY);
+        let window = all.partition_point(|t| *t < from)..all.partition_point(|t| *t <= until);
+        if window.is_empty() {
+            return Err(Error::NoSamples { path: path(), from, until });
+        }
+        let drive = match drive_angle(&file, options, &window) {
+            Err(Error::NoDrive { .. }) if options.over == Over::Time && options.drive.is_none() => {
+                None
+            }
+            found => Some(found?),
+        };
+        let name = file.text("case_name").filter(|name| !name.is_empty());
+        Ok(Run {
+            name: name.map_or_else(|| stem(&file), str::to_owned),
+            times: all[window.clone()].to_vec(),
+            drive,
+            events: file.events()?,
+            contacts: file.contacts()?,
+            peaks: file.peaks()?,
+            window,
+            over: options.over,
+            file,
+        })
+    }
+
+    /// Names of the items of a dimension.
+    pub fn names(&self, dimension: Dimension) -> &[String] {
+        self.file.names(dimension)
+    }
+
+    /// Index of a named item.
+    pub fn index(&self, dimension: Dimension, name: &str) -> Option<usize> {
+        self.names(dimension).iter().position(|known| known == name)
+    }
+
+    /// Whether the mechanism has no clearance.
+    pub fn is_ideal(&self) -> bool {
+        self.names(Dimension::Clearance).is_empty()
+    }
+
+    /// A dataset over time.
+    pub fn samples(&self, dataset: &str) -> Result<Samples, Error> {
+        Ok(Samples { table: self.file.table(dataset)?, window: self.window.clone() })
+    }
+
+    /// A dataset over time that not every file has.
+    pub fn optional_samples(&self, dataset: &str) -> Result<Option<Samples>, Error> {
+        use crate::record::Error::Missing;
+        match self.samples(dataset) {
+            Err(Error::Record(Missing { .. })) => Ok(None),
+            found => found.map(Some),
+        }
+    }
+
+    /// Where the samples are on the horizontal axis (s or rad).
+    pub fn abscissa(&self) -> &[f64] {
+        match (self.over, &self.drive) {
+            (Over::Angle, Some(drive)) => &drive.angles,
+            _ => &self.times,
+        }
+    }
+
+    /// Where a time is on the horizontal axis (s or rad).
+    pub fn place(&self, time: f64) -> f64 {
+        match self.over {
+            Over::Time => time,
+            Over::Angle => interpolate(&self.times, self.abscissa(), time),
+        }
+    }
+
+    /// Whether a time lies in what is drawn.
+    pub fn shows(&self, time: f64) -> bool {
+        let ends = self.times.first().zip(self.times.last());
+        ends.is_some_and(|(first, last)| *first <= time && time <= *last)
+    }
+
+    /// Radial clearance of a joint (m); `None` where no sample tells it.
+    pub fn radial_clearance(&self, clearance: usize) -> Result<Option<f64>, Error> {
+        let eccentricity = self.samples("eccentricity")?.column(clearance);
+        let penetration = self.samples("penetration")?.column(clearance);
+        let mut radial = eccentricity.iter().zip(&penetration).map(|(e, depth)| e - depth);
+        Ok(radial.find(|radial| radial.is_finite() && *radial > 0.0))
+    }
+}
+
+/// A dataset over time, as far as it is drawn.
+#[derive(Debug)]
+pub(super) struct Samples {
+    table: Table,
+    window: Range<usize>,
+}
+
+impl Samples {
+    /// The values of one item.
+    pub fn column(&self, item: usize) -> Vec<f64> {
+        let width = self.table.width.max(1);
+        let rows = self.table.values[self.window.start * width..self.window.end * width].iter();
+        rows.skip(item).step_by(width).copied().collect()
+    }
+}
+
+/// All runs of a figure.
+#[derive(Debug)]
+pub(super) struct Runs {
+    runs: Vec<Run>,
+}
+
+impl Runs {
+    /// Reads the runs of some files.
+    pub fn read(files: Vec<ResultFile>, options: &Options) -> Result<Self, Error> {
+        let read = files.into_iter().map(|file| Run::read(file, options));
+        let mut runs = read.collect::<Result<Vec<Run>, Error>>()?;
+        let names: Vec<String> = runs.iter().map(|run| run.name.clone()).collect();
+        for run in &mut runs {
+            if names.iter().filter(|name| **name == run.name).count() > 1 {
+                run.name = stem(&run.file);
+            }
+        }
+        Ok(Runs { runs })
+    }
+
+    /// The run of the ideal mechanism that others are compared with: the first without clearances,
+    /// if another has some.
+    pub fn ideal(&self) -> Option<&Run> {
+        let compared = self.runs.iter().any(|run| !run.is_ideal());
+        self.runs.iter().find(|run| compared && run.is_ideal())
+    }
+
+    /// The runs that have panels of their own: all others.
+    pub fn shown(&self) -> impl Iterator<Item = &Run> {
+        let ideal = self.ideal();
+        self.runs.iter().filter(move |run| !ideal.is_some_and(|ideal| std::ptr::eq(*run, ideal)))
+    }
+
+    /// Names of the items of a dimension in all runs that are shown, each once.
+    pub fn names(&self, dimension: Dimension) -> Vec<&str> {
+        let mut names: Vec<&str> = Vec::new();
+        for name in self.shown().flat_map(|run| run.names(dimension)) {
+            if !names.contains(&name.as_str()) {
+                names.push(name);
+            }
+        }
+        names
+    }
+
+    /// Ends of the horizontal axis (s or rad).
+    pub fn range(&self) -> [f64; 2] {
+        let places = self.shown().flat_map(|run| {
+            let places = run.abscissa();
+            [places.first(), places.last()].into_iter().flatten().copied()
+        });
+        let ends = super::panel::range_of(places).unwrap_or([0.0, 1.0]);
+        if ends[0] < ends[1] { ends } else { super::panel::with_room(Some(ends)) }
+    }
+
+    /// Name of the drive whose angle counts.
+    pub fn drive(&self) -> Option<&str> {
+        self.shown().find_map(|run| run.drive.as_ref()).map(|drive| drive.name.as_str())
+    }
+}
+
+/// Linear between known values; the end values hold outside.
+pub(super) fn interpolate(at: &[f64], values: &[f64], x: f64) -> f64 {
+    let right = at.partition_point(|known| *known <= x);
+    if right == 0 || right == at.len() {
+        let end = if right == 0 { values.first() } else { values.last() };
+        return end.copied().unwrap_or(f64::NAN);
+    }
+    let (from, to) = (at[right - 1], at[right]);
+    values[right - 1] + (values[right] - values[right - 1]) * ((x - from) / (to - from))
+}
+
+fn stem(file: &ResultFile) -> String {
+    file.path().file_stem().unwrap_or_default().to_string_lossy().into_owned()
+}
+
+/// The angle of the drive that the options name, or of the first. Which bodies it turns stands in
+/// the case that the file holds.
+fn drive_angle(
+    file: &ResultFile,
+    options: &Options,
+    window: &Range<usize>,
+) -> Result<DriveAngle, Error> {
+    let path: PathBuf = file.path().to_owned();
+    let Some(name) = options.drive.as_ref().or(file.drives().first()) else {
+        return Err(Error::NoDrive { path, what: "it has none".to_owned() });
+    };
+    if !file.drives().contains(name) {
+        let hint = did_you_mean(name, file.drives().iter().map(String::as_str));
+        return Err(Error::NoDrive { path, what: format!("it has no drive \"{name}\"{hint}") });
+    }
+    let Some(bodies) = bodies_of_drive(file, name) else {
+        let what = "the case in it cannot be read".to_owned();
+        return Err(Error::NoDrive { path, what });
+    };
+    let [first, second] = bodies.map(|body| match body.as_str() {
+        "ground" => Ok(None),
+        body => file.column(&format!("angle.{body}")).map(Some),
+    });
+    let (first, second) = (first?, second?);
+    let angle = |angles: &Option<Vec<f64>>, row: usize| angles.as_ref().map_or(0.0, |a| a[row]);
+    let angles = window.clone().map(|row| angle(&second, row) - angle(&first, row)).collect();
+    Ok(DriveAngle { name: name.clone(), angles })
+}
+
+/// Names of the bodies that a drive turns against each other, from the case in the file.
+fn bodies_of_drive(file: &ResultFile, name: &str) -> Option<[String; 2]> {
+    let text = file.text("case_toml")?;
+    let case = Case::from_text(file.path(), text, &Changes::default()).ok()?;
+    let drive = case.description.drives.iter().find(|drive| drive.name == name)?;
+    let joint = case.description.joints.iter().find(|joint| joint.name == drive.joint)?;
+    let body = |point: &String| point.split('.').next().unwrap_or_default().to_owned();
+    Some([body(&joint.between[0]), body(&joint.between[1])])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn between_samples_values_are_linear_and_outside_they_stay() {
+        let (at, values) = ([0.0, 1.0, 3.0], [5.0, 7.0, 3.0]);
+        for (x, value) in [(-1.0, 5.0), (0.0, 5.0), (0.5, 6.0), (1.0, 7.0), (2.0, 5.0), (9.0, 3.0)]
+        {
+            assert_eq!(interpolate(&at, &values, x), value, "{x}");
+        }
+        assert!(interpolate(&[], &[], 1.0).is_nan());
+    }
+}

@@ -1,0 +1,175 @@
+//! A page of panels: columns, rows, margins, words.
+
+use super::panel::{Frame, LABEL_GAP, Panel, SMALL_TYPE, TYPE, Words};
+use super::svg::{POINTS_PER_MM, Svg};
+
+/// Width of one column of a journal (mm).
+pub const SINGLE_COLUMN: f64 = 90.0;
+/// Width of two columns of a journal (mm).
+pub const DOUBLE_COLUMN: f64 = 190.0;
+
+/// Margin of the page on every side (pt).
+const MARGIN: f64 = 2.0;
+/// Room right of a frame, for half a label of the horizontal axis (pt).
+const RIGHT: f64 = 9.0;
+/// Line of words over a frame (pt).
+const HEADER: f64 = 12.0;
+/// Distance of a header's words from the frame (pt).
+const HEADER_GAP: f64 = 3.5;
+/// Room for the labels of horizontal ticks (pt).
+const X_LABELS: f64 = LABEL_GAP + SMALL_TYPE;
+/// Room for the title of a horizontal axis (pt).
+const X_TITLE: f64 = 1.4 * TYPE;
+/// Room between rows whose upper one has no labels (pt).
+const ROW_GAP: f64 = 3.0;
+
+/// Panels in rows and columns, as wide as a page.
+#[derive(Debug, Clone)]
+pub(super) struct Sheet {
+    /// Width of the page (mm).
+    pub width: f64,
+    /// Rows of panels; a place may be empty.
+    pub rows: Vec<Vec<Option<Panel>>>,
+    /// Height of each row's frames.
+    pub heights: Vec<Height>,
+    /// Whether all panels of a column have one horizontal axis, labelled at the lowest.
+    pub shared_x: bool,
+}
+
+/// Height of a frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Height {
+    /// So many points.
+    Points(f64),
+    /// So many times the width.
+    OfWidth(f64),
+}
+
+/// Lengths of a sheet (pt).
+struct Layout {
+    /// Room left of each column's frames.
+    left: Vec<f64>,
+    /// Width of all frames.
+    frame: f64,
+    /// Height of each row's frames.
+    heights: Vec<f64>,
+    /// Header lines of each row.
+    headers: Vec<usize>,
+}
+
+impl Sheet {
+    /// Draws the sheet as an SVG file. Returns it with its size (mm).
+    pub fn draw(&self, title: &str, description: &str) -> (String, [f64; 2]) {
+        let layout = self.layout();
+        let mut top = MARGIN;
+        let mut frames = Vec::new();
+        for row in 0..self.rows.len() {
+            top += HEADER * layout.headers[row] as f64;
+            frames.push(top);
+            top += layout.heights[row] + self.below(row);
+        }
+        let size = [self.width, ((top + MARGIN) / POINTS_PER_MM * 100.0).ceil() / 100.0];
+        let mut svg = Svg::new(size, title, description);
+        for (row, top) in frames.into_iter().enumerate() {
+            self.draw_row(&mut svg, &layout, row, top);
+        }
+        (svg.finish(), size)
+    }
+
+    fn draw_row(&self, svg: &mut Svg, layout: &Layout, row: usize, top: f64) {
+        let mut x = MARGIN;
+        for (column, panel) in self.rows[row].iter().enumerate() {
+            x += layout.left[column];
+            if let Some(panel) = panel {
+                let frame = Frame { corner: [x, top], size: [layout.frame, layout.heights[row]] };
+                panel.draw(svg, frame, self.words(row, column), layout.left[column] - 0.85 * TYPE);
+                let line = top - HEADER_GAP;
+                panel.draw_label(svg, [x, line]);
+                let legend = if layout.headers[row] > 1 { line - HEADER } else { line };
+                panel.draw_legend(svg, [x + layout.frame, legend]);
+            }
+            x += layout.frame + RIGHT;
+        }
+    }
+
+    fn layout(&self) -> Layout {
+        let columns = self.columns();
+        let width = self.width * POINTS_PER_MM - 2.0 * MARGIN;
+        // Widths of labels depend on heights, and heights on widths: a first guess will do, since
+        // taller frames only have more ticks of the same kind.
+        let guess = width / columns.max(1) as f64 - 40.0;
+        let heights = |frame: f64| -> Vec<f64> {
+            let height = |height: &Height| match height {
+                Height::Points(points) => *points,
+                Height::OfWidth(share) => share * frame,
+            };
+            self.heights.iter().map(height).collect()
+        };
+        let guessed = heights(guess);
+        let left: Vec<f64> =
+            (0..columns).map(|column| self.room_left_of(column, &guessed)).collect();
+        let frame = (width - left.iter().sum::<f64>()) / columns.max(1) as f64 - RIGHT;
+        let headers = self.rows.iter().map(|row| header_lines(row, frame)).collect();
+        Layout { left, frame, heights: heights(frame), headers }
+    }
+
+    fn columns(&self) -> usize {
+        self.rows.iter().map(Vec::len).max().unwrap_or(0)
+    }
+
+    fn panel(&self, row: usize, column: usize) -> Option<&Panel> {
+        self.rows.get(row)?.get(column)?.as_ref()
+    }
+
+    fn room_left_of(&self, column: usize, heights: &[f64]) -> f64 {
+        let room = |row: usize| {
+            let panel = self.panel(row, column)?;
+            let title = if self.words(row, column).y_title { 1.35 * TYPE } else { 0.0 };
+            Some(panel.label_width(heights[row]) + LABEL_GAP + title)
+        };
+        (0..self.rows.len()).filter_map(room).fold(0.0, f64::max)
+    }
+
+    /// A title stands where no other panel of the same row or column has it for this one.
+    fn words(&self, row: usize, column: usize) -> Words {
+        let below = self.panel(row + 1, column);
+        let left = column.checked_sub(1).and_then(|left| self.panel(row, left));
+        let here = self.panel(row, column);
+        let same = |other: Option<&Panel>, title: fn(&Panel) -> super::text::Text| {
+            here.zip(other).is_some_and(|(here, other)| title(here) == title(other))
+        };
+        let x_title = !same(below, |panel| panel.x.full_title());
+        Words {
+            x_labels: !self.shared_x || x_title,
+            x_title,
+            y_title: !same(left, |panel| panel.y.full_title()),
+        }
+    }
+
+    /// Room below a row's frames (pt).
+    fn below(&self, row: usize) -> f64 {
+        let words: Vec<Words> = (0..self.columns())
+            .filter(|column| self.panel(row, *column).is_some())
+            .map(|column| self.words(row, column))
+            .collect();
+        let labels = if words.iter().any(|words| words.x_labels) { X_LABELS } else { ROW_GAP };
+        labels + if words.iter().any(|words| words.x_title) { X_TITLE } else { 0.0 }
+    }
+}
+
+/// One line if label and legend fit beside each other, else two.
+fn header_lines(row: &[Option<Panel>], frame: f64) -> usize {
+    let panels = || row.iter().flatten();
+    let wide = |panel: &Panel| {
+        let label = panel.label.width(SMALL_TYPE);
+        !panel.legend.is_empty() && label > 0.0 && label + panel.legend_width() > frame
+    };
+    let none = |panel: &Panel| panel.legend.is_empty() && panel.label.is_empty();
+    if panels().any(wide) {
+        2
+    } else if panels().all(none) {
+        0
+    } else {
+        1
+    }
+}

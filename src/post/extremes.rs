@@ -1,0 +1,282 @@
+//! Extremes of every quantity of a run: of a result file, or of a case run on the spot.
+//!
+//! A mechanism without freedom is not sampled but evaluated, so that its extremes are true. The
+//! force of a joint with clearance comes from the peaks that the run found between its samples.
+//! Everything else is interpolated between samples, and says by how much it may be off.
+
+use super::refine::{maximum, stands_out, take_samples};
+use super::tally::{Basis, Extreme, Tally};
+use super::{Error, Quantity, Revolutions};
+use crate::case::{Case, Changes};
+use crate::dae::Fault;
+use crate::mechanism::{Mechanism, Observation};
+use crate::model::Names;
+use crate::record::ResultFile;
+use crate::run::{Assembled, Contact, Event, Peak, Recorder};
+use crate::simulate::Simulation;
+use std::convert::Infallible;
+use std::ops::ControlFlow;
+
+/// Quantities of a run with their extremes.
+#[derive(Debug, Clone)]
+pub struct RunExtremes {
+    /// Names of the run's joints, drives and bodies.
+    pub names: Names,
+    /// Every quantity, with its extremes.
+    pub quantities: Vec<(Quantity, Tally)>,
+}
+
+impl RunExtremes {
+    /// The extremes of the quantity of this name.
+    pub fn of(&self, name: &str) -> Option<&Tally> {
+        let found = self.quantities.iter().find(|(of, _)| of.name(&self.names) == name);
+        found.map(|(_, tally)| tally)
+    }
+
+    /// Of a case without clearance, run on the spot until `end` (s).
+    ///
+    /// # Errors
+    /// A case that describes no mechanism, or whose simulation fails.
+    pub fn of_ideal(case: &Case, end: f64) -> Result<Self, Error> {
+        let simulation = Simulation::new(case).map_err(Error::Case)?;
+        if let Some(assembled) = Assembled::new(simulation.mechanism().clone()) {
+            // one drive: what it does in a revolution it does in all
+            let period = match assembled.mechanism().model().drives() {
+                [drive] => Revolutions::new(drive.law.rate(), end, usize::MAX),
+                _ => None,
+            };
+            let end = period.map_or(end, |period| end.min(period.period()));
+            return Self::of_assembled(assembled, end, None);
+        }
+        let mut recording = Recording::new(simulation.mechanism(), end);
+        let (_, ran) = simulation.run(&mut recording, &mut |_| ControlFlow::Continue(()));
+        ran.map_err(Error::Simulation)?;
+        Ok(recording.into_extremes())
+    }
+
+    /// Of a mechanism that can be evaluated at any time, from 0 to `end` (s).
+    ///
+    /// # Errors
+    /// A position that cannot be reached.
+    pub fn of_assembled(
+        mut assembled: Assembled<f64>,
+        end: f64,
+        parts: Option<Revolutions>,
+    ) -> Result<Self, Error> {
+        let names = assembled.mechanism().model().names().clone();
+        let quantities = Quantity::all(&names);
+        let tallies = quantities.iter().map(|quantity| Tally::new(parts, quantity.is_signed()));
+        let mut tallies: Vec<Tally> = tallies.collect();
+        let mut scan = Scan { assembled: &mut assembled, last: Vec::new() };
+        let spans = match parts {
+            Some(parts) => (0..parts.count()).map(|k| parts.bounds(k)).collect(),
+            None => vec![[0.0, end]],
+        };
+        for [begin, end] in spans {
+            let strides = ((end - begin) / scan.assembled.stride()).ceil().max(2.0);
+            for k in 0..=strides as u64 {
+                let time = begin + (end - begin) * (k as f64 / strides);
+                scan.go(time, &quantities, &mut tallies)
+                    .map_err(|source| Error::System { time, source })?;
+            }
+        }
+        Ok(RunExtremes { names, quantities: quantities.into_iter().zip(tallies).collect() })
+    }
+
+    /// Of a result file. `case` is the case that was run, where it is known.
+    ///
+    /// # Errors
+    /// What reading the file meets.
+    pub fn of_file(
+        file: &ResultFile,
+        case: Option<&Case>,
+        parts: Option<Revolutions>,
+    ) -> Result<Self, Error> {
+        let times = file.times()?;
+        let mechanism = case.and_then(|case| Simulation::new(case).ok());
+        let mechanism = mechanism.map(|simulation| simulation.mechanism().clone());
+        let names = names_of(file);
+        if let (Some(mechanism), Some(&end)) = (mechanism, times.last())
+            && *mechanism.model().names() == names
+            && let Some(assembled) = Assembled::new(mechanism)
+        {
+            return Self::of_assembled(assembled, end, parts);
+        }
+        let breaks: Vec<f64> = file.events()?.iter().map(|event| event.time).collect();
+        let mut quantities = Vec::new();
+        for quantity in Quantity::all(&names) {
+            let mut tally = Tally::new(parts, quantity.is_signed());
+            let values = values_of(file, quantity)?;
+            let clearance = match quantity {
+                Quantity::JointForce(joint) => {
+                    names.clearances.iter().position(|name| *name == names.joints[joint])
+                }
+                _ => None,
+            };
+            match clearance {
+                Some(k) => take_contact_force(&mut tally, file, k, &times, &values)?,
+                None => take_samples(&mut tally, &times, &values, &breaks),
+            }
+            quantities.push((quantity, tally));
+        }
+        Ok(RunExtremes { names, quantities })
+    }
+}
+
+/// Names of everything in a file.
+pub(super) fn names_of(file: &ResultFile) -> Names {
+    Names {
+        bodies: file.bodies().to_vec(),
+        joints: file.joints().to_vec(),
+        clearances: file.clearances().to_vec(),
+        drives: file.drives().to_vec(),
+    }
+}
+
+/// The case that a file holds, with changes; the text of the file is the case as run.
+///
+/// # Errors
+/// The file has none, or this program cannot read it.
+pub fn case_of(file: &ResultFile, changes: &Changes) -> Result<Case, Error> {
+    let Some(text) = file.text("case_toml") else {
+        return Err(Error::NoCase { path: file.path().to_owned() });
+    };
+    Case::from_text(file.path(), text, changes).map_err(Error::Case)
+}
+
+/// A quantity at every sample of a file.
+fn values_of(file: &ResultFile, quantity: Quantity) -> Result<Vec<f64>, Error> {
+    let column = |name: &str, item: usize| Ok::<_, Error>(file.table(name)?.column(item));
+    match quantity {
+        Quantity::JointForce(joint) => {
+            let (x, y) = (column("joint_force_x", joint)?, column("joint_force_y", joint)?);
+            Ok(x.iter().zip(&y).map(|(x, y)| x.hypot(*y)).collect())
+        }
+        Quantity::DriveTorque(drive) => column("drive_torque", drive),
+        Quantity::AngularAcceleration(body) => column("angular_acceleration", body),
+    }
+}
+
+/// Takes the force of a joint with clearance: samples, and the peaks that the run found. Their
+/// normal force becomes the whole by the friction of the nearest sample in contact.
+fn take_contact_force(
+    tally: &mut Tally,
+    file: &ResultFile,
+    clearance: usize,
+    times: &[f64],
+    values: &[f64],
+) -> Result<(), Error> {
+    let normal = file.table("normal_force")?.column(clearance);
+    let tangential = file.table("tangential_force")?.column(clearance);
+    let friction = |time: f64| {
+        let after = times.partition_point(|sample| *sample < time);
+        let beside = [after.checked_sub(1), Some(after)].into_iter().flatten();
+        let touching = beside.filter(|k| normal.get(*k).is_some_and(|normal| *normal != 0.0));
+        let near =
+            touching.min_by(|a, b| (times[*a] - time).abs().total_cmp(&(times[*b] - time).abs()));
+        near.map_or(0.0, |k| tangential[k] / normal[k])
+    };
+    let peaks = file.peaks()?.into_iter().map(|peak| (peak.clearance, peak.time, peak.force));
+    let contacts = file.contacts()?.into_iter();
+    let contacts = contacts.map(|c| (c.clearance, c.peak_time, c.peak_force));
+    for (_, time, force) in peaks.chain(contacts).filter(|(k, ..)| *k == clearance) {
+        let force = force.abs() * 1_f64.hypot(friction(time));
+        tally.take(Extreme::new(force, time, Basis::Peak));
+    }
+    for (&time, &value) in times.iter().zip(values) {
+        tally.take(Extreme::new(value, time, Basis::Sample));
+    }
+    Ok(())
+}
+
+/// A walk through time that looks for extremes on its way.
+struct Scan<'a> {
+    assembled: &'a mut Assembled<f64>,
+    /// Times of the last two stations, and the quantities there.
+    last: Vec<(f64, Vec<f64>)>,
+}
+
+impl Scan<'_> {
+    /// Goes to a time (s).
+    fn go(&mut self, time: f64, of: &[Quantity], tallies: &mut [Tally]) -> Result<(), Fault> {
+        if self.last.last().is_some_and(|(last, _)| *last >= time) {
+            return Ok(());
+        }
+        let here = self.assembled.observe(time)?;
+        let values: Vec<f64> = of.iter().map(|quantity| quantity.of(&here)).collect();
+        for (tally, value) in tallies.iter_mut().zip(&values) {
+            tally.take(Extreme::new(*value, time, Basis::Evaluated));
+        }
+        self.last.push((time, values));
+        if self.last.len() > 3 {
+            self.last.remove(0);
+        }
+        if let [before, middle, after] = &self.last[..] {
+            for (k, tally) in tallies.iter_mut().enumerate() {
+                for &sign in tally.signs() {
+                    let three = [before.1[k], middle.1[k], after.1[k]].map(|value| sign * value);
+                    if stands_out(three) {
+                        let (time, value) = maximum([before.0, after.0], |time| {
+                            Ok::<_, Fault>(sign * of[k].of(&self.assembled.observe(time)?))
+                        })?;
+                        tally.take(Extreme::new(sign * value, time, Basis::Evaluated));
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// What is kept of a run on the spot that has no clearance.
+struct Recording {
+    names: Names,
+    quantities: Vec<Quantity>,
+    end: f64,
+    times: Vec<f64>,
+    values: Vec<Vec<f64>>,
+}
+
+impl Recording {
+    fn new(mechanism: &Mechanism<f64>, end: f64) -> Self {
+        let names = mechanism.model().names().clone();
+        let quantities = Quantity::all(&names);
+        let values = vec![Vec::new(); quantities.len()];
+        Recording { names, quantities, end, times: Vec::new(), values }
+    }
+
+    fn into_extremes(self) -> RunExtremes {
+        let quantities = self.quantities.into_iter().zip(&self.values).map(|(quantity, values)| {
+            let mut tally = Tally::new(None, quantity.is_signed());
+            take_samples(&mut tally, &self.times, values, &[]);
+            (quantity, tally)
+        });
+        RunExtremes { names: self.names, quantities: quantities.collect() }
+    }
+}
+
+impl Recorder for Recording {
+    type Error = Infallible;
+
+    fn sample(&mut self, observation: &Observation) -> Result<(), Infallible> {
+        if observation.time <= self.end {
+            self.times.push(observation.time);
+            for (values, quantity) in self.values.iter_mut().zip(&self.quantities) {
+                values.push(quantity.of(observation));
+            }
+        }
+        Ok(())
+    }
+
+    fn event(&mut self, _: Event) -> Result<(), Infallible> {
+        Ok(())
+    }
+
+    fn contact(&mut self, _: Contact) -> Result<(), Infallible> {
+        Ok(())
+    }
+
+    fn peak(&mut self, _: Peak) -> Result<(), Infallible> {
+        Ok(())
+    }
+}

@@ -1,0 +1,182 @@
+//! A mass against a wall, which is a journal that flies through the centre of its bearing to and
+//! fro. Known in advance, for each law F = K δⁿ (1 + a δ̇/v0): the rebound ratio e, root of
+//! a (1 + e) = ln((1 + a)/(1 − a e)), and from the first integral of the impact its greatest depth,
+//! its greatest force and what it dissipates.
+
+mod simulated;
+
+use freeplay::run::Contact;
+use simulated::{Kept, case_of, simulate};
+
+const MASS: f64 = 0.05;
+/// The paper's K (N/m^1.5).
+const STIFFNESS: f64 = 1.043_715_536_510_028_3e10;
+const TOLERANCE: f64 = 1e-12;
+
+/// A law, its restitution, its damping weight a, and its rebound ratio where it is known.
+type Law = (&'static str, f64, f64, Option<f64>);
+
+const LAWS: [Law; 5] = [
+    ("hertz", 1.0, 0.0, Some(1.0)),
+    ("lankarani-nikravesh", 0.9, 0.75 * 0.19, Some(0.913_176_677_805_581)),
+    ("lankarani-nikravesh", 0.5, 0.75 * 0.75, Some(0.725_241_114_010_197)),
+    ("lankarani-nikravesh", 0.7, 0.75 * 0.51, None),
+    ("lankarani-nikravesh", 0.99, 0.75 * 0.0199, None),
+];
+
+/// To and fro at a speed (m/s) with a law, until some impacts have been.
+fn to_and_fro(law: &Law, exponent: f64, speed: f64) -> Kept {
+    let (name, restitution, _, _) = law;
+    let restitution = match *name {
+        "hertz" => String::new(),
+        _ => format!("restitution = {restitution:?}, "),
+    };
+    let duration = 0.025 / speed;
+    let text = format!(
+        r#"
+        [ground]
+        points = {{ O = [0.1, -0.2] }}
+        [bodies.journal]
+        mass = {MASS}
+        inertia = 2e-6
+        points = {{ C = [0.0, 0.0] }}
+        [joints.O]
+        kind = "revolute"
+        between = ["ground.O", "journal.C"]
+        [joints.O.clearance]
+        bearing_radius = 0.01
+        radial = 0.001
+        normal = {{ law = "{name}", {restitution}stiffness = {STIFFNESS:?}, exponent = {exponent:?} }}
+        [start.journal]
+        x = 0.1
+        y = -0.2
+        angle = 0.0
+        velocity_x = {speed:?}
+        velocity_y = 0.0
+        angular_velocity = 3.0
+        fixed = true
+        [run]
+        duration = {duration:?}
+        sample_interval = {duration:?}
+        [solver]
+        absolute_tolerance = "scaled"
+        "#
+    );
+    simulate(&case_of(&text, &[]))
+}
+
+/// Root e of a (1 + e) = ln((1 + a)/(1 − a e)) beside 1.
+fn rebound_ratio(a: f64) -> f64 {
+    if a == 0.0 {
+        return 1.0;
+    }
+    let off = |e: f64| a * (1.0 + e) - (a.ln_1p() - (-a * e).ln_1p());
+    let (mut low, mut high) = (0.0, 1.0);
+    for _ in 0..100 {
+        let middle = 0.5 * (low + high);
+        if off(middle) > 0.0 { low = middle } else { high = middle }
+    }
+    low
+}
+
+/// Depth (m) at which the rate is u times that of the impact: the first integral.
+fn depth(a: f64, n: f64, speed: f64, u: f64) -> f64 {
+    let integral = match a {
+        0.0 => 0.5 * (1.0 - u * u),
+        _ => (1.0 - u) / a - (a.ln_1p() - (a * u).ln_1p()) / (a * a),
+    };
+    ((n + 1.0) * MASS * speed * speed / STIFFNESS * integral).powf(1.0 / (n + 1.0))
+}
+
+/// Greatest force (N) of an impact, by golden sections over the rate.
+fn greatest_force(a: f64, n: f64, speed: f64) -> f64 {
+    let force = |u: f64| STIFFNESS * depth(a, n, speed, u).powf(n) * (1.0 + a * u);
+    let golden = (5.0_f64.sqrt() - 1.0) / 2.0;
+    let (mut left, mut right) = (0.0, 1.0);
+    while right - left > 1e-9 {
+        let width = golden * (right - left);
+        let (low, high) = (right - width, left + width);
+        if force(low) < force(high) { left = low } else { right = high }
+    }
+    force(0.5 * (left + right))
+}
+
+fn assert_near(what: &str, found: f64, exact: f64) {
+    let allowed = 1e3 * TOLERANCE * exact;
+    assert!((found - exact).abs() <= allowed, "{what}: {found:e}, exact {exact:e}");
+}
+
+#[test]
+fn each_rebound_has_the_ratio_of_its_law_whatever_the_speed_and_the_exponent() {
+    for law in &LAWS {
+        let (name, _, a, known) = *law;
+        let exact = rebound_ratio(a);
+        if let Some(known) = known {
+            assert!((exact - known).abs() < 1e-13, "{name}: {exact}, known {known}");
+        }
+        for (exponent, speed) in [(1.5, 1.0), (1.5, 0.05), (1.5, 7.0), (1.2, 1.0), (2.0, 0.3)] {
+            let kept = to_and_fro(law, exponent, speed);
+            let rates: Vec<f64> = kept.contacts.iter().map(|contact| contact.impact_rate).collect();
+            assert!(rates.len() >= 5, "{name}: {} impacts", rates.len());
+            assert_near("the first impact", rates[0], speed);
+            for pair in rates.windows(2) {
+                assert_near(&format!("{name}, rebound"), pair[1] / pair[0], exact);
+            }
+        }
+    }
+}
+
+/// The contacts of a run that have ended.
+fn ended(kept: &Kept) -> impl Iterator<Item = &Contact> {
+    kept.contacts.iter().filter(|contact| !contact.end.is_nan())
+}
+
+#[test]
+fn each_impact_has_the_depth_force_and_dissipation_of_its_first_integral() {
+    for law in &LAWS {
+        let (name, _, a, _) = *law;
+        for exponent in [1.5, 1.2, 2.0] {
+            let kept = to_and_fro(law, exponent, 1.0);
+            assert!(ended(&kept).count() >= 4, "{name}");
+            for contact in ended(&kept) {
+                let speed = contact.impact_rate;
+                let deepest = depth(a, exponent, speed, 0.0);
+                assert_near("depth", contact.peak_penetration, deepest);
+                assert_near("force", contact.peak_force, greatest_force(a, exponent, speed));
+                let energy = 0.5 * MASS * speed * speed;
+                let lost = energy * (1.0 - rebound_ratio(a).powi(2));
+                let off = (contact.dissipated - lost).abs();
+                assert!(off <= 1e3 * TOLERANCE * energy, "{name}: {off:e} of {energy:e} J");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_hertz_impact_lasts_as_long_and_goes_as_deep_as_hertz_found() {
+    let kept = to_and_fro(&LAWS[0], 1.5, 1.0);
+    for contact in ended(&kept) {
+        assert_near("depth", contact.peak_penetration, 3.242_792_408_213_991_6e-5);
+        assert_near("force", contact.peak_force, 1_927.351_249_549_232);
+        let duration = 2.943_275_184_324_7 * contact.peak_penetration / contact.impact_rate;
+        assert_near("duration", contact.end - contact.begin, duration);
+        let half = 0.5 * duration;
+        // at a maximum the time has half the digits that the value has
+        assert!((contact.peak_time - contact.begin - half).abs() <= 1e-6 * half);
+    }
+}
+
+#[test]
+fn nothing_but_the_head_on_motion_changes() {
+    let kept = to_and_fro(&LAWS[1], 1.5, 1.0);
+    let journal = &kept.last().bodies[0];
+    assert_eq!(journal.angular_velocity, 3.0);
+    assert!((journal.position[1] + 0.2).abs() <= 1e-15 && journal.velocity[1].abs() <= 1e-12);
+    let residual = kept.largest(|sample| sample.energy.residual);
+    assert!(residual <= 1e3 * TOLERANCE * 0.5 * MASS, "{residual:e} J");
+    // every flight is the width of the bearing at the speed of the last rebound
+    for pair in kept.contacts.windows(2) {
+        let flight = pair[1].begin - pair[0].end;
+        assert_near("flight", flight, 2e-3 / pair[1].impact_rate);
+    }
+}
