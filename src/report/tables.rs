@@ -114,8 +114,10 @@ fn contact_rows(table: &mut Matrix, runs: &[Summarised<'_>], joint: &str) {
         let phase = |s: &Stretch| format!("{} to {}", milliseconds(s.begin), milliseconds(s.end));
         Some(phases.map(phase).collect::<Vec<_>>().join("<br>"))
     };
-    let told = |run| permanent(run).filter(|phases| !phases.is_empty()).unwrap_or_else(dash);
-    table.row("permanent contact (ms)", runs.iter().map(told));
+    let told = |run| permanent(run).filter(|phases| !phases.is_empty());
+    if runs.iter().any(|run| told(run).is_some()) {
+        table.row("permanent contact (ms)", runs.iter().map(|run| told(run).unwrap_or_else(dash)));
+    }
 }
 
 /// Ratio of the largest force in each revolution to the ideal mechanism's largest.
@@ -185,8 +187,9 @@ fn with_uncertainty(extreme: &Extreme) -> String {
     let sizeable = |uncertainty: &f64| *uncertainty > 5e-7 * extreme.value.abs();
     match extreme.uncertainty.filter(sizeable) {
         Some(uncertainty) => {
-            let digits = significant(uncertainty, 1);
-            format!("{value} <span class=\"about\">±\u{202f}{digits}</span>")
+            let rounded = format!("{uncertainty:.0e}").parse().unwrap_or(uncertainty);
+            let about = significant(rounded, 1);
+            format!("{value} <span class=\"about\">±\u{202f}{about}</span>")
         }
         None => value,
     }
