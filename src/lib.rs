@@ -23,4 +23,5 @@ pub mod post;
 pub mod export;
 pub mod compare;
 pub mod figure;
+pub mod report;
 pub mod cli;

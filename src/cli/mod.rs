@@ -6,6 +6,7 @@ mod compare;
 mod export;
 mod info;
 mod plot;
+mod report;
 mod run;
 mod signals;
 mod summary;
@@ -42,6 +43,8 @@ enum Command {
     Plot(plot::Arguments),
     /// Write a result file for other tools: CSV, Parquet, OpenMBV.
     Export(export::Arguments),
+    /// Write a page on one or several runs: summary, charts, the mechanism in motion.
+    Report(report::Arguments),
 }
 
 /// A case file, and what the command line changes in it.
@@ -139,6 +142,7 @@ pub fn main() -> ExitCode {
         Command::Compare(arguments) => compare::compare(&arguments),
         Command::Plot(arguments) => plot::plot(&arguments),
         Command::Export(arguments) => export::export(&arguments),
+        Command::Report(arguments) => report::report(&arguments),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,
