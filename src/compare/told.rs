@@ -184,7 +184,7 @@ impl Comparison {
             "in both",
             "only theirs",
             "only reference",
-            "largest difference until then (s)",
+            "largest difference (s)",
             "at (s)",
         ]);
         let first = events.first_unmatched();
@@ -204,18 +204,19 @@ impl Comparison {
             let right = |cell: String| Cell::new(cell).set_alignment(CellAlignment::Right);
             table.add_row(std::iter::once(Cell::new(name)).chain(numbers.into_iter().map(right)));
         }
-        writeln!(f, "\nEvents, one to one:\n{table}")?;
         match first {
-            None => writeln!(f, "Each has its like."),
+            None => writeln!(f, "\nEvents, one to one; each has its like:")?,
             Some(first) => writeln!(
                 f,
-                "First without its like: {} in {} at {} s, only in {}",
+                "\nEvents, one to one; the first without its like: {} in {} at {} s, only in {}; \
+                 differences are those before it:",
                 first.kind.replace('_', " "),
                 self.parts.0.clearances[first.clearance],
                 seconds(first.time),
                 if first.in_theirs { "theirs" } else { "the reference" }
-            ),
+            )?,
         }
+        writeln!(f, "{table}")
     }
 
     fn clearance(&self, row: &EventRow) -> &str {
@@ -310,7 +311,8 @@ mod tests {
             let lengths: usize = stretches.iter().map(ExactSizeIterator::len).sum();
             assert_eq!(lengths, samples as usize);
             assert!(
-                stretches.len() <= ROWS && stretches.windows(2).all(|p| p[0].end == p[1].start)
+                stretches.len() <= ROWS as usize + 1
+                    && stretches.windows(2).all(|p| p[0].end == p[1].start)
             );
         }
     }
