@@ -264,9 +264,10 @@ impl<S: Scalar, Y: System<S>> Explicit<S, Y> {
         let here = &mut self.here;
         let mut set = |i: usize, value: S| {
             if here.y[i] != value {
-                here.y[i] = value;
                 here.low[i] = S::zero();
             }
+            // equal or not: numbers that carry more than a value compare by the value alone
+            here.y[i] = value;
         };
         for i in 0..n {
             set(i, now.q[i]);
@@ -552,11 +553,8 @@ impl<S: Scalar, Y: System<S>> Engine<S> for Explicit<S, Y> {
         self.take_snapshot();
         self.tally.steps += 1;
         self.count_progress(before)?;
-        if advance == Advance::Event {
-            self.tally.events += 1;
-        } else {
-            self.settle();
-        }
+        self.tally.events += u64::from(advance == Advance::Event);
+        self.settle();
         Ok(advance)
     }
 
