@@ -47,7 +47,13 @@ impl Run {
         let (counts, rulings) = (statistics.engine, statistics.rulings);
         let finished_utc = String::new();
         writer
-            .finish(Ending { outcome: Outcome::Complete, counts, rulings, finished_utc })
+            .finish(Ending {
+                outcome: Outcome::Complete,
+                counts,
+                rulings,
+                finished_utc,
+                series: Vec::new(),
+            })
             .unwrap();
         Run { folder, path }
     }

@@ -226,13 +226,13 @@ impl<S: Scalar> Extrapolation<S> {
         let stride = steps.div_ceil(LARGEST_NUMBER_OF_NOTES);
         flow.clear_notes();
         let mut now = std::mem::take(&mut self.columns[k - 1]);
-        for i in 0..len {
-            self.before[i] = S::zero();
-            now[i] = step * from.rates[i];
+        self.before[..len].fill(S::zero());
+        for (now, rate) in now[..len].iter_mut().zip(&from.rates) {
+            *now = step * *rate;
         }
         for s in 1..steps {
-            for i in 0..controlled {
-                self.place[i] = from.y[i] + now[i];
+            for ((place, y), now) in self.place[..controlled].iter_mut().zip(&from.y).zip(&now) {
+                *place = *y + *now;
             }
             let done = flow.add_rates(&self.place, double, &mut self.before);
             std::mem::swap(&mut now, &mut self.before);

@@ -378,7 +378,7 @@ impl<S: Scalar, Y: System<S>> Explicit<S, Y> {
         let mut powers = self.flow.system.watches().iter().enumerate();
         let waiting =
             powers.any(|(k, w)| Flow::<S, Y>::degree(*w).is_some() && self.flow.slot(k).is_none());
-        let due = self.tally.steps % REVISION == 0 && !self.flow.roots().is_empty();
+        let due = self.tally.steps.is_multiple_of(REVISION) && !self.flow.roots().is_empty();
         if !(waiting || due) {
             return Ok(());
         }
