@@ -21,10 +21,10 @@ pub struct Arguments {
     #[arg(long)]
     json: bool,
     /// Fail with exit code 1 where fewer digits agree.
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
     require_digits: Option<f64>,
     /// Look no further than this time (s).
-    #[arg(long, value_name = "T")]
+    #[arg(long, value_name = "T", allow_negative_numbers = true)]
     until: Option<f64>,
     /// Which column of another program is which of ours: phi3=angle.coupler, t[ms]=time.
     #[arg(long, value_name = "THEIRS=OURS")]
@@ -67,7 +67,7 @@ pub(super) fn compare(arguments: &Arguments) -> Result<(), Failure> {
     bar.finish_and_clear();
     let comparison = compared.map_err(failure)?;
     match arguments.json {
-        true => super::print(format_args!("{:#}\n", comparison.json(arguments.require_digits))),
+        true => super::print(format_args!("{}\n", comparison.json(arguments.require_digits))),
         false => super::print(&comparison),
     }
     match arguments.require_digits.and_then(|digits| comparison.shortfall(digits)) {

@@ -10,8 +10,8 @@ use super::series::{Aligned, Certificate, Series};
 use super::source::{Source, Trajectory, case_in};
 use super::{Error, mechanism, note};
 use crate::case::Case;
-use crate::model::JointKind;
-use crate::record::{DATASETS, ResultFile};
+use crate::model::{JointDescription, JointKind};
+use crate::record::{self, DATASETS, ResultFile};
 use crate::run::Watcher;
 use std::path::{Path, PathBuf};
 
@@ -122,7 +122,7 @@ impl Comparison {
         let [theirs_maps, reference_maps] = share_maps(&files, request.maps)?;
         let theirs = Read::new(&files[0], &subject.parts, &compared, theirs_maps)?;
         let reference = Read::new(&files[1], &subject.parts, &compared, reference_maps)?;
-        let scales = subject.scales(&reference)?;
+        let scales = subject.scales(&reference);
         let common = common(&theirs, &reference, &subject.parts)?;
         let (theirs, reference) = (theirs.with_columns(&common), reference.with_columns(&common));
         let pairing = Pairing { theirs: &theirs, reference: &reference, request };
@@ -186,7 +186,12 @@ impl Subject {
     /// Neither file is a result, or they are of two mechanisms.
     fn of(files: &[Source; 2]) -> Result<Subject, Error> {
         let read = |file: &ResultFile| -> Result<Subject, Error> {
-            Ok(Subject { parts: Parts::of(file), case: case_in(file, "case_toml")? })
+            let subject = Subject { parts: Parts::of(file), case: case_in(file, "case_toml")? };
+            if subject.radial().len() == subject.parts.0.clearances.len() {
+                return Ok(subject);
+            }
+            let what = "its case has other clearances than it names".to_owned();
+            Err(record::Error::Damaged { path: file.path().to_owned(), what }.into())
         };
         let [theirs, reference] = files;
         let paths = || (theirs.path().to_owned(), reference.path().to_owned());
@@ -209,20 +214,24 @@ impl Subject {
         }
     }
 
-    /// The scales that a reference gives.
-    fn scales(&self, reference: &Read<'_>) -> Result<Scales, Error> {
-        let radial = |joint: &crate::model::JointDescription| match &joint.kind {
+    /// Radial clearances (m).
+    fn radial(&self) -> Vec<f64> {
+        let radial = |joint: &JointDescription| match &joint.kind {
             JointKind::Revolute { clearance } => {
                 clearance.as_ref().map(|clearance| clearance.radial.to_f64())
             }
         };
-        let radial = self.case.description.joints.iter().filter_map(radial).collect();
+        self.case.description.joints.iter().filter_map(radial).collect()
+    }
+
+    /// The scales that a reference gives.
+    fn scales(&self, reference: &Read<'_>) -> Scales {
         let Trajectory { columns, values, .. } = &reference.trajectory;
-        let scales = Scales::measure(columns, values, radial);
-        Ok(match reference.result() {
+        let scales = Scales::measure(columns, values, self.radial());
+        match reference.result() {
             Some(file) => scales.with_those_of(file, &self.parts),
             None => scales,
-        })
+        }
     }
 }
 
@@ -324,7 +333,7 @@ fn common(theirs: &Read<'_>, reference: &Read<'_>, parts: &Parts) -> Result<Vec<
     Err(Error::NothingInCommon {
         path: foreign.map_or(theirs.path(), |(table, _)| &table.path).to_owned(),
         columns: foreign.map_or(String::new(), |(table, _)| table.names()),
-        ours: b.first().map_or(String::new(), |column| parts.name(column)),
+        ours: parts.names_of(b),
     })
 }
 

@@ -202,13 +202,13 @@ pub enum Error {
         si: &'static str,
     },
     /// No column of theirs is one of ours.
-    #[error("{} has no columns in common with the state: --map THEIRS={ours}, of {columns}", path.display())]
+    #[error("{} has no columns that are known to be of ours; --map THEIRS=OURS tells which are\n  theirs: {columns}\n  ours: {ours}", path.display())]
     NothingInCommon {
         /// The file.
         path: PathBuf,
         /// Its columns.
         columns: String,
-        /// One of ours.
+        /// Ours.
         ours: String,
     },
     /// Neither file says which mechanism it is of.

@@ -76,7 +76,6 @@ impl Comparison {
             "fewest": worst,
             "holds": holds,
             "digits": grades.iter().map(|grade| grade.digits).collect::<Vec<_>>(),
-            "at_least": grades.iter().map(|grade| grade.at_least).collect::<Vec<_>>(),
         })
     }
 

@@ -107,7 +107,7 @@ impl Mapping {
             return Err(Error::NothingInCommon {
                 path: table.path.clone(),
                 columns: table.names(),
-                ours: compared.first().map_or(String::new(), |column| parts.name(column)),
+                ours: parts.names_of(compared),
             });
         }
         let used =

@@ -201,6 +201,12 @@ impl Parts {
         Quantity::ALL.into_iter().filter(wanted).flat_map(of).collect()
     }
 
+    /// Names of columns, for a message.
+    pub fn names_of(&self, columns: &[Column]) -> String {
+        let names: Vec<String> = columns.iter().map(|column| self.name(column)).collect();
+        names.join(", ")
+    }
+
     /// Name of a column, `angle.coupler`.
     pub fn name(&self, column: &Column) -> String {
         let item = self.items(column.dataset).map(|items| items[column.item].as_str());

@@ -14,7 +14,7 @@ use super::quantity::{Column, Part, Parts, Quantity};
 use super::scale::Scales;
 use super::source::{Trajectory, case_in};
 use crate::mechanism::Observation;
-use crate::record::ResultFile;
+use crate::record::{self, ResultFile};
 use crate::run::{Contact, Event, Peak, Progress, Recorder, Watcher};
 use crate::simulate::{self, Simulation};
 use std::convert::Infallible;
@@ -122,6 +122,11 @@ impl Reference<'_> {
             path: self.file.path().to_owned(),
             source: Box::new(source),
         })?;
+        let duration: f64 = simulation.schedule().duration();
+        if times.iter().any(|time| !(0.0..=duration).contains(time)) {
+            let what = format!("its case lasts {duration} s, its samples do not lie within");
+            return Err(record::Error::Damaged { path: self.file.path().to_owned(), what }.into());
+        }
         let mut samples = Samples::new(&self.stored.columns);
         let last = times.last().copied().unwrap_or_default();
         let mut stopped = false;

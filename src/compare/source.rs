@@ -13,7 +13,7 @@ use std::path::Path;
 #[derive(Debug)]
 pub enum Source {
     /// A result of ours.
-    Result(ResultFile),
+    Result(Box<ResultFile>),
     /// A table of another program.
     Foreign(ForeignTable),
 }
@@ -25,7 +25,7 @@ impl Source {
     /// It cannot be read or is of no kind known.
     pub fn open(path: &Path) -> Result<Source, Error> {
         match ResultFile::open(path) {
-            Ok(file) => Ok(Source::Result(file)),
+            Ok(file) => Ok(Source::Result(Box::new(file))),
             Err(record::Error::NotHdf5 { .. } | record::Error::NotAResult { .. }) => {
                 ForeignTable::read(path).map(Source::Foreign)
             }

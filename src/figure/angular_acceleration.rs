@@ -29,8 +29,8 @@ pub(super) fn draw(runs: &Runs, figures: &mut Figures<'_>) -> Result<(), Error> 
     for (body, curves) in bodies.iter().filter(|(_, curves)| largest(curves) > EVEN * of_all) {
         let ideal = runs.ideal().map(|run| acceleration(run, body)).transpose()?.flatten();
         let title = format!("Angular acceleration of {body}");
-        let axis = Text::roman(format!("Ang. acceleration of {body}, ")).and_italic("α");
-        let sheets = stack(&x, &axis, "rad/s^2", curves, ideal.as_ref());
+        let axis = Text::roman("Angular acceleration, ").and_italic("α");
+        let sheets = stack(&x, &axis, "rad/s^2", body, curves, ideal.as_ref());
         figures.add("angular-acceleration", Some(body), &title, sheets);
     }
     Ok(())

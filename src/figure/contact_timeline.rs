@@ -40,7 +40,7 @@ fn panel(run: &Run, x: &Axis) -> (usize, Panel) {
     let last = run.times.last().copied().unwrap_or_default();
     let first = run.times.first().copied().unwrap_or_default();
     let bars = |clearance: usize| {
-        let bars = contacts(run, clearance).map(|contact| {
+        let bars = contacts(run, clearance).into_iter().map(|contact| {
             let end = if contact.end.is_nan() { last } else { contact.end };
             [contact.begin.max(first), end.min(last)]
         });

@@ -5,7 +5,7 @@ use super::over_time::{Curve, column, time_axis};
 use super::palette::{BLACK, BLUE};
 use super::panel::{Axis, Choice, Mark, Panel, Sample, range_of};
 use super::quantity::Unit;
-use super::runs::{Run, Runs};
+use super::runs::Runs;
 use super::svg::Stroke;
 use super::text::Text;
 use super::{Error, Figures};
@@ -23,8 +23,7 @@ pub(super) fn draw(runs: &Runs, figures: &mut Figures<'_>) -> Result<(), Error> 
     for run in runs.shown() {
         let mut curves = Vec::new();
         for (dataset, words, stroke) in CURVES {
-            let samples = run.optional_samples(dataset)?;
-            let curve = samples.map(|samples| Curve::of(run, samples.column(0)));
+            let curve = run.optional_column(dataset)?.map(|values| Curve::of(run, values));
             curves.extend(curve.map(|curve| (words, stroke, curve)));
         }
         if !curves.is_empty() {

@@ -16,8 +16,8 @@ pub(super) fn draw(runs: &Runs, figures: &mut Figures<'_>) -> Result<(), Error> 
         }
         let ideal = runs.ideal().map(|run| torque(run, drive)).transpose()?.flatten();
         let title = format!("Torque of drive {drive}");
-        let axis = Text::roman(format!("{title}, ")).and_italic("T");
-        let sheets = stack(&x, &axis, "N m", &curves, ideal.as_ref());
+        let axis = Text::roman("Torque, ").and_italic("T");
+        let sheets = stack(&x, &axis, "N m", drive, &curves, ideal.as_ref());
         figures.add("torque", Some(drive), &title, sheets);
     }
     Ok(())

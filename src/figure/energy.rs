@@ -1,9 +1,8 @@
 //! Energy balance of each run: its parts, and what the balance is off by.
 
 use super::over_time::{Curve, column, time_axis};
-use super::palette::{BLACK, BLUE, GREEN, ORANGE, PURPLE, SKY, VERMILLION};
-use super::panel::{Axis, Choice, Mark, Panel, Sample, range_of, with_room, zero_line};
-use super::quantity::Unit;
+use super::palette::{BLACK, BLUE, GREEN, ORANGE, PURPLE, RUN, VERMILLION};
+use super::panel::{Axis, Mark, Panel, Sample, range_of, zero_line};
 use super::runs::{Run, Runs};
 use super::svg::Stroke;
 use super::text::Text;
@@ -11,8 +10,8 @@ use super::{Error, Figures};
 
 /// The parts of the balance: dataset, words, stroke.
 const PARTS: [(&str, &str, Stroke); 6] = [
-    ("energy_kinetic", "kinetic", Stroke::solid(BLUE, 0.7)),
-    ("energy_potential", "potential", Stroke::solid(GREEN, 0.9)),
+    ("energy_kinetic", "kinetic", Stroke::solid(BLUE, 0.6)),
+    ("energy_potential", "potential", Stroke::solid(GREEN, 1.1)),
     ("energy_elastic", "elastic", Stroke::solid(ORANGE, 0.5)),
     ("energy_dissipated", "dissipated", Stroke::solid(VERMILLION, 1.2)),
     ("drive_work", "drive work", Stroke::dashed(BLACK, 0.8)),
@@ -46,16 +45,16 @@ fn parts(run: &Run, x: &Axis) -> Result<Panel, Error> {
         marks.push(Mark::Curve(Curve::of(run, values).points, stroke));
         legend.push((Sample::Line(stroke), Text::roman(words)));
     }
-    let y = axis(Text::roman("Energy, ").and_italic("E"), ends);
+    let y = Axis::fitting(Text::roman("Energy, ").and_italic("E"), "J", ends);
     marks.splice(0..0, zero_line(y.range));
     Ok(Panel { label: Text::roman(&run.name), legend, x: x.clone(), y, marks })
 }
 
 fn residual(run: &Run, x: &Axis) -> Result<Panel, Error> {
     let values = run.samples("energy_residual")?.column(0);
-    let y = axis(Text::roman("Residual"), values.clone());
+    let y = Axis::fitting(Text::roman("Residual"), "J", values.iter().copied());
     let mut marks: Vec<Mark> = zero_line(y.range).into_iter().collect();
-    marks.push(Mark::Curve(Curve::of(run, values).points, Stroke::solid(SKY, 0.7)));
+    marks.push(Mark::Curve(Curve::of(run, values).points, RUN));
     Ok(Panel {
         label: Text::roman("residual of the balance"),
         legend: Vec::new(),
@@ -63,10 +62,4 @@ fn residual(run: &Run, x: &Axis) -> Result<Panel, Error> {
         y,
         marks,
     })
-}
-
-fn axis(title: Text, values: Vec<f64>) -> Axis {
-    let range = with_room(range_of(values));
-    let unit = Unit::fitting("J", range[0].abs().max(range[1].abs()));
-    Axis { title, unit, range, ticks: Choice::Decimal }
 }

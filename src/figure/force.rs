@@ -25,8 +25,8 @@ pub(super) fn draw(runs: &Runs, figures: &mut Figures<'_>) -> Result<(), Error> 
             ("Force", Text::italic("F"))
         };
         let title = format!("{words} in {joint}");
-        let axis = Text::roman(format!("{title}, ")).and_text(&symbol);
-        let sheets = stack(&x, &axis, "N", &curves, ideal.as_ref());
+        let axis = Text::roman(format!("{words}, ")).and_text(&symbol);
+        let sheets = stack(&x, &axis, "N", joint, &curves, ideal.as_ref());
         figures.add("force", Some(joint), &title, sheets);
     }
     Ok(())

@@ -8,6 +8,7 @@ use super::quantity::Unit;
 use super::runs::{Run, Runs};
 use super::svg::Stroke;
 use super::text::Text;
+use super::touching::{Knot, cubic, history};
 use super::{Error, Figures};
 
 /// Draws one figure with a panel for each joint of each run.
@@ -21,11 +22,49 @@ pub(super) fn draw(runs: &Runs, figures: &mut Figures<'_>) -> Result<(), Error> 
     Ok(())
 }
 
-/// Centre of the journal relative to that of the bearing at all samples (m).
+/// Centre of the journal relative to that of the bearing (m) at all samples, and as often between
+/// them as a smooth curve needs: its distance is that of the clearance's history, its direction
+/// that of a cubic through the samples.
 fn path(run: &Run, clearance: usize) -> Result<Vec<Point>, Error> {
     let x = run.samples("clearance_x")?.column(clearance);
     let y = run.samples("clearance_y")?.column(clearance);
-    Ok(x.into_iter().zip(y).map(|(x, y)| [x, y]).collect())
+    let Some(radial) = run.radial_clearance(clearance)? else {
+        return Ok(x.into_iter().zip(y).map(|(x, y)| [x, y]).collect());
+    };
+    let mut points = Vec::new();
+    let mut sample = 0;
+    for moment in history(run, clearance)? {
+        while run.times.get(sample + 1).is_some_and(|next| *next <= moment.time) {
+            sample += 1;
+        }
+        if run.times[sample] == moment.time {
+            points.push([x[sample], y[sample]]);
+            continue;
+        }
+        let [x, y] = [&x, &y].map(|values| through(&run.times, values, sample, moment.time));
+        let scale = (radial + moment.depth) / x.hypot(y);
+        points.push([scale * x, scale * y]);
+    }
+    Ok(points)
+}
+
+/// Value between sample `k` and the next of a cubic with the slopes of parabolas through three
+/// samples each.
+fn through(times: &[f64], values: &[f64], k: usize, time: f64) -> f64 {
+    let last = times.len() - 1;
+    if k == last {
+        return values[k];
+    }
+    let secant = |k: usize| (values[k + 1] - values[k]) / (times[k + 1] - times[k]);
+    let slope = |k: usize| {
+        if k == 0 || k == last {
+            return secant(k.min(last - 1));
+        }
+        let (before, after) = (times[k] - times[k - 1], times[k + 1] - times[k]);
+        (secant(k - 1) * after + secant(k) * before) / (before + after)
+    };
+    let knot = |k: usize| Knot { time: times[k], value: values[k], slope: slope(k) };
+    cubic([knot(k), knot(k + 1)], time).0
 }
 
 /// A square panel about the circle of the clearance, as wide as some points need.
@@ -40,7 +79,7 @@ pub(super) fn in_the_circle(
     let far = points.iter().map(|[x, y]| x.abs().max(y.abs())).filter(|far| far.is_finite());
     let far = far.fold(radial.unwrap_or(0.0), f64::max);
     let far = if far > 0.0 { 1.08 * far } else { 1.0 };
-    marks.extend(radial.map(|radial| Mark::Circle(radial, Stroke::dashed(BLACK, 0.6))));
+    marks.extend(radial.map(|radial| Mark::Circle(radial, Stroke::dashed(BLACK, 0.5))));
     let axis = |letter: &str| Axis {
         title: Text::roman("Δ").and_italic(letter),
         unit: Unit::fitting("m", far),
@@ -49,4 +88,21 @@ pub(super) fn in_the_circle(
     };
     let label = Text::roman(format!("{}, {joint}", run.name));
     Ok(Panel { label, legend: Vec::new(), x: axis("x"), y: axis("y"), marks })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::through;
+
+    #[test]
+    fn a_parabola_is_met_between_uneven_samples() {
+        let times = [0.0, 1.0, 1.5, 3.0, 4.0];
+        let values = times.map(|t| 2.0 - 3.0 * t + 0.5 * t * t);
+        for (k, time) in [(1, 1.2), (2, 2.0), (2, 2.9)] {
+            let expected = 2.0 - 3.0 * time + 0.5 * time * time;
+            let found = through(&times, &values, k, time);
+            assert!((found - expected).abs() < 1e-12, "{time}: {found} {expected}");
+        }
+        assert_eq!(through(&times, &values, 4, 4.5), values[4]);
+    }
 }

@@ -18,6 +18,7 @@ mod energy;
 mod fonts;
 mod force;
 mod grid;
+mod ink;
 mod journal_path;
 mod over_time;
 mod palette;

@@ -3,7 +3,7 @@
 use super::Over;
 use super::decimate::Point;
 use super::palette::{IDEAL, RUN};
-use super::panel::{Axis, Choice, Mark, Panel, Sample, range_of, with_room, zero_line};
+use super::panel::{Axis, Choice, Mark, Panel, Sample, zero_line};
 use super::quantity::Unit;
 use super::runs::{Run, Runs};
 use super::sheet::{DOUBLE_COLUMN, Height, Sheet};
@@ -47,30 +47,24 @@ pub(super) fn time_axis(runs: &Runs, over: Over) -> Axis {
     }
 }
 
-/// Panels of one quantity, a run each, with the ideal mechanism's curve in all of them. All have
+/// Panels of one quantity of one part of the mechanism, a run each, with the ideal mechanism's curve in all of them. All have
 /// the same axes, so that heights compare.
 pub(super) fn stack(
     x: &Axis,
     title: &Text,
     unit: &str,
+    part: &str,
     curves: &[Curve],
     ideal: Option<&Curve>,
 ) -> Vec<Sheet> {
     let everything = curves.iter().chain(ideal).flat_map(|curve| &curve.points);
-    let range = with_room(range_of(everything.map(|point| point[1])));
-    let largest = range[0].abs().max(range[1].abs());
-    let y = Axis {
-        title: title.clone(),
-        unit: Unit::fitting(unit, largest),
-        range,
-        ticks: Choice::Decimal,
-    };
+    let y = Axis::fitting(title.clone(), unit, everything.map(|point| point[1]));
     let panel = |curve: &Curve| {
-        let mut marks: Vec<Mark> = zero_line(range).into_iter().collect();
+        let mut marks: Vec<Mark> = zero_line(y.range).into_iter().collect();
         marks.push(Mark::Curve(curve.points.clone(), RUN));
         marks.extend(ideal.map(|ideal| Mark::Curve(ideal.points.clone(), IDEAL)));
         Panel {
-            label: Text::roman(&curve.run),
+            label: Text::roman(format!("{}, {part}", curve.run)),
             legend: Vec::new(),
             x: x.clone(),
             y: y.clone(),
@@ -91,7 +85,7 @@ pub(super) fn stack(
 /// Panels under each other over one horizontal axis.
 pub(super) fn column(mut panels: Vec<Panel>) -> Sheet {
     letter(panels.iter_mut());
-    let height = if panels.len() == 1 { 130.0 } else { 88.0 };
+    let height = if panels.len() == 1 { 140.0 } else { 85.0 };
     Sheet {
         width: DOUBLE_COLUMN,
         heights: vec![Height::Points(height); panels.len()],

@@ -1,7 +1,8 @@
 //! One panel of a figure: a frame, two axes, and what is drawn between them.
 
 use super::decimate::{Point, by_columns, by_distance};
-use super::palette::{BLACK, FRAME};
+use super::ink::without_covered;
+use super::palette::FRAME;
 use super::quantity::Unit;
 use super::svg::{Anchor, Stroke, Svg};
 use super::text::Text;
@@ -54,6 +55,14 @@ impl Axis {
         self.unit.behind(self.title.clone())
     }
 
+    /// An axis of round numbers with room for all values, in the unit that suits them. `unit` is
+    /// written as in result files.
+    pub fn fitting(title: Text, unit: &str, values: impl IntoIterator<Item = f64>) -> Self {
+        let range = with_room(range_of(values));
+        let unit = Unit::fitting(unit, range[0].abs().max(range[1].abs()));
+        Axis { title, unit, range, ticks: Choice::Decimal }
+    }
+
     /// Ticks that suit a length on the page (pt), `spacing` apart at least.
     pub fn ticks(&self, length: f64, spacing: f64) -> Ticks {
         let range = self.range.map(|end| end / self.unit.size);
@@ -85,6 +94,17 @@ pub(super) enum Mark {
     Upright(f64, Stroke),
 }
 
+impl Mark {
+    /// Values on the vertical axis of a curve or a level.
+    pub fn heights(&self) -> Vec<f64> {
+        match self {
+            Mark::Curve(points, _) => points.iter().map(|point| point[1]).collect(),
+            Mark::Level(height, _) => vec![*height],
+            _ => Vec::new(),
+        }
+    }
+}
+
 /// How a point is drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Dot {
@@ -99,8 +119,6 @@ pub(super) struct Dot {
 pub(super) enum Sample {
     /// A line.
     Line(Stroke),
-    /// A point.
-    Dot(Dot),
     /// A bar.
     Bar(&'static str),
 }
@@ -142,18 +160,26 @@ pub(super) struct Words {
 
 /// Distances of major ticks that leave room for labels: across and down (pt).
 const SPACING: [f64; 2] = [38.0, 19.0];
+/// The same where both axes are alike (pt).
+const EQUAL_SPACING: f64 = 30.0;
 
 impl Panel {
+    fn spacing(&self) -> [f64; 2] {
+        let alike = self.x.range == self.y.range && self.x.unit == self.y.unit;
+        if alike { [EQUAL_SPACING; 2] } else { SPACING }
+    }
+
     /// Width of the vertical axis' labels for a frame of this height (pt).
-    pub fn label_width(&self, height: f64) -> f64 {
-        let widest = |labels: &[String]| {
-            let widths = labels.iter().map(|label| Text::roman(label).width(SMALL_TYPE));
-            widths.fold(0.0, f64::max)
-        };
+    pub fn y_label_width(&self, height: f64) -> f64 {
         match &self.y.ticks {
             Choice::Names(names) => widest(names),
-            _ => widest(&self.y.ticks(height, SPACING[1]).labels),
+            _ => widest(&self.y.ticks(height, self.spacing()[1]).labels),
         }
+    }
+
+    /// Width of the horizontal axis' labels for a frame of this width (pt).
+    pub fn x_label_width(&self, width: f64) -> f64 {
+        widest(&self.x.ticks(width, self.spacing()[0]).labels)
     }
 
     /// Width of the legend (pt).
@@ -182,7 +208,7 @@ impl Panel {
     }
 
     fn draw_x(&self, svg: &mut Svg, frame: Frame, words: Words) {
-        let ticks = self.x.ticks(frame.size[0], SPACING[0]);
+        let ticks = self.x.ticks(frame.size[0], self.spacing()[0]);
         let [top, bottom] = [frame.corner[1], frame.corner[1] + frame.size[1]];
         let place = |tick: &f64| self.across(frame, tick * self.x.unit.size);
         let both = |places: &[f64], length: f64| -> Vec<[Point; 2]> {
@@ -213,7 +239,7 @@ impl Panel {
             }
             return;
         }
-        let ticks = self.y.ticks(frame.size[1], SPACING[1]);
+        let ticks = self.y.ticks(frame.size[1], self.spacing()[1]);
         let place = |tick: &f64| self.down(frame, tick * self.y.unit.size);
         for (tick, words) in ticks.major.iter().zip(&ticks.labels) {
             label(place(tick), words);
@@ -239,7 +265,8 @@ impl Panel {
                 svg.path(&by_distance(&columns, TOLERANCE), stroke);
             }
             Mark::Path(points, stroke) => {
-                svg.path(&by_distance(&placed(points), TOLERANCE), stroke);
+                let path = by_distance(&placed(points), TOLERANCE);
+                svg.path(&without_covered(path, stroke.width), stroke);
             }
             Mark::Dots(points, dot) => {
                 let finite = placed(points).into_iter().filter(|[x, y]| (x + y).is_finite());
@@ -306,7 +333,6 @@ impl Panel {
             let to = from + SAMPLE;
             match sample {
                 Sample::Line(stroke) => svg.lines([[[from, y], [to, y]]], stroke),
-                Sample::Dot(dot) => svg.discs([[0.5 * (from + to), y]], dot.radius, dot.colour),
                 Sample::Bar(colour) => {
                     svg.rectangles([[[from, y - 2.5], [to, y + 2.5]]], colour);
                 }
@@ -320,6 +346,11 @@ impl Panel {
     pub fn draw_label(&self, svg: &mut Svg, at: Point) {
         svg.text(at, Anchor::Start, SMALL_TYPE, &self.label);
     }
+}
+
+/// Width of the widest label (pt).
+fn widest(labels: &[String]) -> f64 {
+    labels.iter().map(|label| Text::roman(label).width(SMALL_TYPE)).fold(0.0, f64::max)
 }
 
 /// Length of a line beside the words of a legend (pt).
@@ -346,19 +377,21 @@ pub(super) fn range_of(values: impl IntoIterator<Item = f64>) -> Option<[f64; 2]
     })
 }
 
-/// A range with room about it, a twentieth of it each side; an end at zero stays there, and a
-/// range without width gets some.
+/// Least width of an axis that shows more than the last digits of its values, in units of these.
+const LEAST_SPAN: f64 = 0.01;
+
+/// A range with room about it, a twentieth of it each side; an end at zero stays there, and a range
+/// so narrow that only digits far behind the point would tell its ends apart is widened.
 pub(super) fn with_room(range: Option<[f64; 2]>) -> [f64; 2] {
     let [low, high] = range.unwrap_or([0.0, 1.0]);
-    if high - low <= 1e-12 * low.abs().max(high.abs()) {
-        let room = if low == 0.0 { 1.0 } else { 0.1 * low.abs() };
-        return if low == 0.0 { [0.0, 1.0] } else { [low - room, high + room] };
+    let largest = low.abs().max(high.abs());
+    if largest == 0.0 {
+        return [0.0, 1.0];
+    }
+    if high - low < LEAST_SPAN * largest {
+        let middle = 0.5 * (low + high);
+        return [middle - 0.5 * LEAST_SPAN * largest, middle + 0.5 * LEAST_SPAN * largest];
     }
     let room = 0.05 * (high - low);
     [if low == 0.0 { 0.0 } else { low - room }, if high == 0.0 { 0.0 } else { high + room }]
-}
-
-/// A stroke's colour is black by default.
-pub(super) const fn thin_black() -> Stroke {
-    Stroke::solid(BLACK, 0.5)
 }

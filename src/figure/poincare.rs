@@ -6,12 +6,14 @@ use super::journal_path::in_the_circle;
 use super::palette::BLUE;
 use super::panel::{Dot, Mark};
 use super::runs::{DriveAngle, Run, Runs, interpolate};
+use super::ticks::signed;
 use super::{Error, Figures};
 use std::f64::consts::TAU;
 
 /// Draws one figure with a panel for each joint of each run that has a drive.
 pub(super) fn draw(runs: &Runs, figures: &mut Figures<'_>) -> Result<(), Error> {
     let section = figures.options.section;
+    let angle = signed(&format!("{}", (section.to_degrees() * 1e6).round() / 1e6));
     let sheets = by_run_and_joint(runs, 1.0, |run, joint, index| {
         let Some(drive) = &run.drive else { return Ok(None) };
         let times = passages(&run.times, drive, section);
@@ -20,10 +22,11 @@ pub(super) fn draw(runs: &Runs, figures: &mut Figures<'_>) -> Result<(), Error> 
         }
         let points = at(run, index, &times)?;
         let marks = vec![Mark::Dots(points.clone(), Dot { radius: 1.4, colour: BLUE })];
-        in_the_circle(run, joint, index, &points, marks).map(Some)
+        let mut panel = in_the_circle(run, joint, index, &points, marks)?;
+        panel.label = panel.label.and(", ").and_italic("φ").and(format!(" = {angle}°"));
+        Ok(Some(panel))
     })?;
-    let degrees = section.to_degrees();
-    let title = format!("Centres of the journals at drive angle {degrees} degrees");
+    let title = format!("Centres of the journals at drive angle {angle}°");
     figures.add("poincare", None, &title, sheets);
     Ok(())
 }

@@ -5,8 +5,11 @@ use crate::case::{Case, Changes};
 use crate::model::did_you_mean;
 use crate::record::{Dimension, ResultFile, Table};
 use crate::run::{Contact, Event, Peak};
+use std::cell::RefCell;
+use std::collections::VecDeque;
 use std::ops::Range;
 use std::path::PathBuf;
+use std::rc::Rc;
 
 /// A run, read as far as several figures need it.
 #[derive(Debug)]
@@ -26,7 +29,12 @@ pub(super) struct Run {
     pub peaks: Vec<Peak>,
     window: Range<usize>,
     over: Over,
+    /// Datasets read last: figures of several parts read the same ones again.
+    read: RefCell<VecDeque<Rc<Table>>>,
 }
+
+/// Datasets kept in memory.
+const KEPT: usize = 4;
 
 /// The angle of a drive over time.
 #[derive(Debug, Clone, PartialEq)]
@@ -63,6 +71,7 @@ impl Run {
             peaks: file.peaks()?,
             window,
             over: options.over,
+            read: RefCell::default(),
             file,
         })
     }
@@ -84,16 +93,22 @@ impl Run {
 
     /// A dataset over time.
     pub fn samples(&self, dataset: &str) -> Result<Samples, Error> {
-        Ok(Samples { table: self.file.table(dataset)?, window: self.window.clone() })
+        let known = self.read.borrow().iter().find(|table| table.dataset.name == dataset).cloned();
+        let table = match known {
+            Some(table) => table,
+            None => Rc::new(self.file.table(dataset)?),
+        };
+        let mut read = self.read.borrow_mut();
+        read.retain(|other| other.dataset.name != dataset);
+        read.push_front(Rc::clone(&table));
+        read.truncate(KEPT);
+        Ok(Samples { table, window: self.window.clone() })
     }
 
-    /// A dataset over time that not every file has.
-    pub fn optional_samples(&self, dataset: &str) -> Result<Option<Samples>, Error> {
-        use crate::record::Error::Missing;
-        match self.samples(dataset) {
-            Err(Error::Record(Missing { .. })) => Ok(None),
-            found => found.map(Some),
-        }
+    /// A single column over time that not every file has.
+    pub fn optional_column(&self, dataset: &str) -> Result<Option<Vec<f64>>, Error> {
+        let column = self.file.over_time(dataset)?;
+        Ok(column.map(|column| column[self.window.clone()].to_vec()))
     }
 
     /// Where the samples are on the horizontal axis (s or rad).
@@ -130,7 +145,7 @@ impl Run {
 /// A dataset over time, as far as it is drawn.
 #[derive(Debug)]
 pub(super) struct Samples {
-    table: Table,
+    table: Rc<Table>,
     window: Range<usize>,
 }
 

@@ -1,7 +1,8 @@
 //! A page of panels: columns, rows, margins, words.
 
 use super::panel::{Frame, LABEL_GAP, Panel, SMALL_TYPE, TYPE, Words};
-use super::svg::{POINTS_PER_MM, Svg};
+use super::svg::{Anchor, POINTS_PER_MM, Svg};
+use super::text::Text;
 
 /// Width of one column of a journal (mm).
 pub const SINGLE_COLUMN: f64 = 90.0;
@@ -10,8 +11,8 @@ pub const DOUBLE_COLUMN: f64 = 190.0;
 
 /// Margin of the page on every side (pt).
 const MARGIN: f64 = 2.0;
-/// Room right of a frame, for half a label of the horizontal axis (pt).
-const RIGHT: f64 = 9.0;
+/// Least room right of a frame (pt).
+const RIGHT: f64 = 6.0;
 /// Line of words over a frame (pt).
 const HEADER: f64 = 12.0;
 /// Distance of a header's words from the frame (pt).
@@ -20,8 +21,12 @@ const HEADER_GAP: f64 = 3.5;
 const X_LABELS: f64 = LABEL_GAP + SMALL_TYPE;
 /// Room for the title of a horizontal axis (pt).
 const X_TITLE: f64 = 1.4 * TYPE;
+/// How far the baseline of an upward title lies from the margin (pt).
+const TITLE_DROP: f64 = 0.85 * TYPE;
+/// Room for an upward title (pt).
+const Y_TITLE: f64 = 1.35 * TYPE;
 /// Room between rows whose upper one has no labels (pt).
-const ROW_GAP: f64 = 3.0;
+const ROW_GAP: f64 = 6.0;
 
 /// Panels in rows and columns, as wide as a page.
 #[derive(Debug, Clone)]
@@ -49,6 +54,8 @@ pub(super) enum Height {
 struct Layout {
     /// Room left of each column's frames.
     left: Vec<f64>,
+    /// Room right of all frames, for half a label of the horizontal axis.
+    right: f64,
     /// Width of all frames.
     frame: f64,
     /// Height of each row's frames.
@@ -70,8 +77,15 @@ impl Sheet {
         }
         let size = [self.width, ((top + MARGIN) / POINTS_PER_MM * 100.0).ceil() / 100.0];
         let mut svg = Svg::new(size, title, description);
-        for (row, top) in frames.into_iter().enumerate() {
-            self.draw_row(&mut svg, &layout, row, top);
+        for (row, top) in frames.iter().enumerate() {
+            self.draw_row(&mut svg, &layout, row, *top);
+        }
+        if let (Some(title), Some(first), Some(last)) =
+            (self.common_title(), frames.first(), frames.last())
+        {
+            let bottom = last + layout.heights.last().unwrap_or(&0.0);
+            let at = [MARGIN + TITLE_DROP, 0.5 * (first + bottom)];
+            svg.text_upwards(at, Anchor::Middle, TYPE, &title);
         }
         (svg.finish(), size)
     }
@@ -82,13 +96,13 @@ impl Sheet {
             x += layout.left[column];
             if let Some(panel) = panel {
                 let frame = Frame { corner: [x, top], size: [layout.frame, layout.heights[row]] };
-                panel.draw(svg, frame, self.words(row, column), layout.left[column] - 0.85 * TYPE);
+                panel.draw(svg, frame, self.words(row, column), layout.left[column] - TITLE_DROP);
                 let line = top - HEADER_GAP;
                 panel.draw_label(svg, [x, line]);
                 let legend = if layout.headers[row] > 1 { line - HEADER } else { line };
                 panel.draw_legend(svg, [x + layout.frame, legend]);
             }
-            x += layout.frame + RIGHT;
+            x += layout.frame + layout.right;
         }
     }
 
@@ -108,9 +122,11 @@ impl Sheet {
         let guessed = heights(guess);
         let left: Vec<f64> =
             (0..columns).map(|column| self.room_left_of(column, &guessed)).collect();
-        let frame = (width - left.iter().sum::<f64>()) / columns.max(1) as f64 - RIGHT;
+        let panels = self.rows.iter().flatten().flatten();
+        let right = panels.map(|panel| 0.5 * panel.x_label_width(guess)).fold(RIGHT, f64::max);
+        let frame = (width - left.iter().sum::<f64>()) / columns.max(1) as f64 - right;
         let headers = self.rows.iter().map(|row| header_lines(row, frame)).collect();
-        Layout { left, frame, heights: heights(frame), headers }
+        Layout { left, right, frame, heights: heights(frame), headers }
     }
 
     fn columns(&self) -> usize {
@@ -124,8 +140,9 @@ impl Sheet {
     fn room_left_of(&self, column: usize, heights: &[f64]) -> f64 {
         let room = |row: usize| {
             let panel = self.panel(row, column)?;
-            let title = if self.words(row, column).y_title { 1.35 * TYPE } else { 0.0 };
-            Some(panel.label_width(heights[row]) + LABEL_GAP + title)
+            let titled = self.words(row, column).y_title || self.common_title().is_some();
+            let title = if titled { Y_TITLE } else { 0.0 };
+            Some(panel.y_label_width(heights[row]) + LABEL_GAP + title)
         };
         (0..self.rows.len()).filter_map(room).fold(0.0, f64::max)
     }
@@ -135,15 +152,22 @@ impl Sheet {
         let below = self.panel(row + 1, column);
         let left = column.checked_sub(1).and_then(|left| self.panel(row, left));
         let here = self.panel(row, column);
-        let same = |other: Option<&Panel>, title: fn(&Panel) -> super::text::Text| {
+        let same = |other: Option<&Panel>, title: fn(&Panel) -> Text| {
             here.zip(other).is_some_and(|(here, other)| title(here) == title(other))
         };
         let x_title = !same(below, |panel| panel.x.full_title());
         Words {
             x_labels: !self.shared_x || x_title,
             x_title,
-            y_title: !same(left, |panel| panel.y.full_title()),
+            y_title: self.common_title().is_none() && !same(left, |panel| panel.y.full_title()),
         }
+    }
+
+    /// The title of the vertical axis that all panels of a single column share.
+    fn common_title(&self) -> Option<Text> {
+        let mut titles = self.rows.iter().flatten().flatten().map(|panel| panel.y.full_title());
+        let first = titles.next().filter(|_| self.shared_x && self.rows.len() > 1)?;
+        titles.all(|title| title == first).then_some(first)
     }
 
     /// Room below a row's frames (pt).

@@ -92,6 +92,7 @@ impl Text {
     }
 
     /// The words without their style.
+    #[cfg(test)]
     pub fn plain(&self) -> String {
         self.0.iter().map(|span| span.text.as_str()).collect()
     }

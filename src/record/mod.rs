@@ -17,7 +17,7 @@ mod writer;
 
 pub use attribute::Attribute;
 pub use error::{Error, LibraryError};
-pub use header::{Ending, Header, Outcome, utc};
+pub use header::{Ending, Header, Outcome, Series, utc};
 pub use overview::Overview;
 pub(crate) use publish::Draft;
 pub use reader::{ResultFile, Table};

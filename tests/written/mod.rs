@@ -41,7 +41,8 @@ impl Run {
         ran.unwrap();
         let (counts, rulings) = (statistics.engine, statistics.rulings);
         let (outcome, finished_utc) = (Outcome::Complete, String::new());
-        writer.finish(Ending { outcome, counts, rulings, finished_utc }).unwrap();
+        let series = Vec::new();
+        writer.finish(Ending { outcome, counts, rulings, finished_utc, series }).unwrap();
         Run { folder, path }
     }
 

@@ -17,39 +17,90 @@ pub(super) fn read(path: &Path, text: &str) -> Result<ForeignTable, Error> {
     let Some(head) = head(path, text)? else {
         return Err(Error::Empty { path: path.to_owned() });
     };
-    let mut columns: Vec<ForeignColumn> = head
-        .names
-        .iter()
-        .map(|name| ForeignColumn {
-            name: name.clone(),
-            values: Vec::new(),
-            text: None,
-            written_digits: Some(0),
-        })
-        .collect();
-    for (number, line) in text.lines().enumerate().skip(head.body) {
-        let line_number = number as u64 + 1;
-        if line.trim().is_empty() || is_comment(line) {
-            continue;
-        }
-        let cells = fields(path, line_number, line, head.separator)?;
-        if cells.len() != columns.len() {
-            return Err(Error::Ragged {
-                path: path.to_owned(),
-                line: line_number,
-                fields: cells.len(),
-                names: columns.len(),
-            });
-        }
-        for (column, cell) in columns.iter_mut().zip(&cells) {
-            column.add(line_number, cell);
-        }
+    let columns = head.names.iter().map(|name| ForeignColumn {
+        name: name.clone(),
+        values: Vec::new(),
+        text: None,
+        written_digits: Some(0),
+    });
+    let mut rows = Rows { path, columns: columns.collect() };
+    match head.separator {
+        ' ' => rows.read_blank(text, head.body)?,
+        separator => rows.read_separated(text, head.body, separator)?,
     }
+    let columns = rows.columns;
     if columns.iter().all(|column| column.values.is_empty()) {
         return Err(Error::Empty { path: path.to_owned() });
     }
     let ends_within_a_line = !text.ends_with(['\n', '\r']);
     Ok(ForeignTable { path: path.to_owned(), format: Format::Text, columns, ends_within_a_line })
+}
+
+/// The rows read so far.
+struct Rows<'a> {
+    path: &'a Path,
+    columns: Vec<ForeignColumn>,
+}
+
+impl Rows<'_> {
+    /// Reads rows whose fields stand apart by blanks, from line `body` on, counted from 0.
+    fn read_blank(&mut self, text: &str, body: usize) -> Result<(), Error> {
+        for (line, row) in text.lines().enumerate().skip(body) {
+            if !row.trim().is_empty() && !is_comment(row) {
+                self.add(line as u64 + 1, row.split_whitespace())?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Reads rows whose fields stand apart by a separator, from line `body` on, counted from 0.
+    fn read_separated(&mut self, text: &str, body: usize, separator: char) -> Result<(), Error> {
+        let before: usize = text.split_inclusive('\n').take(body).map(str::len).sum();
+        let mut reader = reader(&text[before..], separator);
+        let mut record = csv::StringRecord::new();
+        loop {
+            let line = body as u64 + reader.position().line();
+            match reader.read_record(&mut record) {
+                Ok(true) => {}
+                Ok(false) => return Ok(()),
+                Err(error) => return Err(unparsable(self.path, line, &error)),
+            }
+            let line = record.position().map_or(line, |at| body as u64 + at.line());
+            let first = record.get(0).unwrap_or_default();
+            let blank = record.len() == 1 && first.is_empty();
+            if !blank && !is_comment(first) {
+                self.add(line, record.iter())?;
+            }
+        }
+    }
+
+    fn add<'a>(&mut self, line: u64, cells: impl Iterator<Item = &'a str>) -> Result<(), Error> {
+        let mut fields = 0;
+        for cell in cells {
+            if let Some(column) = self.columns.get_mut(fields) {
+                column.add(line, cell.trim_matches('"'));
+            }
+            fields += 1;
+        }
+        let names = self.columns.len();
+        if fields == names {
+            return Ok(());
+        }
+        Err(Error::Ragged { path: self.path.to_owned(), line, fields, names })
+    }
+}
+
+fn reader(text: &str, separator: char) -> csv::Reader<&[u8]> {
+    csv::ReaderBuilder::new()
+        .has_headers(false)
+        .flexible(true)
+        .delimiter(separator as u8)
+        .trim(csv::Trim::All)
+        .from_reader(text.as_bytes())
+}
+
+fn unparsable(path: &Path, line: u64, error: &csv::Error) -> Error {
+    Error::Unparsable { path: path.to_owned(), line, message: error.to_string() }
 }
 
 /// The line of names, and what follows from it.
@@ -102,16 +153,12 @@ fn fields(path: &Path, line: u64, text: &str, separator: char) -> Result<Vec<Str
     if separator == ' ' {
         return Ok(text.split_whitespace().map(str::to_owned).collect());
     }
-    let mut reader = csv::ReaderBuilder::new()
-        .has_headers(false)
-        .delimiter(separator as u8)
-        .trim(csv::Trim::All)
-        .from_reader(text.as_bytes());
-    match reader.records().next() {
-        Some(Ok(record)) => Ok(record.iter().map(str::to_owned).collect()),
-        Some(Err(error)) => {
-            Err(Error::Unparsable { path: path.to_owned(), line, message: error.to_string() })
+    match reader(text, separator).records().next() {
+        // quotes behind a blank are no quotes to the reader
+        Some(Ok(record)) => {
+            Ok(record.iter().map(|field| field.trim_matches('"').to_owned()).collect())
         }
+        Some(Err(error)) => Err(unparsable(path, line, &error)),
         None => Ok(Vec::new()),
     }
 }
@@ -187,8 +234,10 @@ mod tests {
 
     #[test]
     fn a_line_that_is_cut_short_is_told_by_its_number() {
-        let complaint = complaint("t,phi\n0,1\n0.5\n");
-        assert!(complaint.contains("line 3"), "{complaint}");
+        for text in ["t,phi\n0,1\n\n# remark, of two\n0.5\n", "t phi\n0 1\n\n% remark\n0.5\n"] {
+            let complaint = complaint(text);
+            assert!(complaint.contains("line 5"), "{complaint}");
+        }
     }
 
     #[test]

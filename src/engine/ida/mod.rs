@@ -4,10 +4,9 @@
 //! F(t, y, ẏ) = 0,  y = (q, v, λ)
 //! ```
 //!
-//! [`Ida`] is safe to use: what is unsafe is in `ffi.rs`. What its settings are, and why, is
-//! measured in NUMERICS.md; the ones that let a run at tolerances of 1e-12 and 1e-20 finish are the
-//! fifty error-test failures a step may have, λ out of every norm, and the small first step after
-//! each restart.
+//! [`Ida`] is safe to use: what is unsafe is in `ffi.rs`. The settings that let a run at tolerances
+//! of 1e-12 and 1e-20 finish are the fifty error-test failures a step may have, λ out of every norm,
+//! and the small first step after each restart.
 //!
 //! Source of the method: A. C. Hindmarsh et al., SUNDIALS: Suite of nonlinear and
 //! differential/algebraic equation solvers, ACM TOMS 31 (2005) 363–396, and IDA's user guide.
@@ -133,7 +132,7 @@ impl<Y: Dae> Ida<Y> {
             system.scales(),
         )?;
         let now = Snapshot::new(system.coordinates(), system.integrals());
-        let quadrature = Quadrature::new(system.integrals());
+        let quadrature = Quadrature::new(system.integrals(), typical_turning(system.scales()));
         let fired = vec![false; system.watches().len()];
         let stock = options.stock_vector_operations;
         Ok(Ida {
@@ -208,6 +207,11 @@ impl<Y: Dae> Ida<Y> {
         self.now.v.copy_from_slice(&y[n..2 * n]);
         self.evaluate()?;
         self.quadrature.advance(time, self.solver.system_ref().powers());
+        if self.quadrature.wants_looks(time - self.began.time) {
+            let gained = self.gather(time)?;
+            self.quadrature.correct(&gained);
+            self.evaluate()?;
+        }
         self.now.integrals.copy_from_slice(self.quadrature.totals());
         let setback = self.solver.take_setback();
         self.progress.made(time, setback)?;
@@ -216,6 +220,21 @@ impl<Y: Dae> Ida<Y> {
             return Ok(Advance::Event);
         }
         Ok(Advance::Stepped)
+    }
+
+    /// Integrals (J) from the begin of IDA's last step to a time (s) within it, of powers inside it.
+    fn gather(&mut self, until: f64) -> Result<Vec<f64>, Error> {
+        let n = self.now.q.len();
+        let mut gained = vec![0.0; self.now.integrals.len()];
+        for (time, weight) in self.quadrature.looks(self.began.time, until) {
+            let y = self.solver.interpolate(time)?[..2 * n].to_vec();
+            let (q, v) = y.split_at(n);
+            let evaluated = self.solver.system().evaluate(State { time, q, v, turns: None });
+            evaluated.map_err(|source| Error::System { time, source })?;
+            let powers = self.solver.system_ref().powers();
+            gained.iter_mut().zip(powers).for_each(|(gained, power)| *gained += weight * power);
+        }
+        Ok(gained)
     }
 
     /// Goes to an end that is within rounding, too near for IDA, along the tangent.
@@ -310,7 +329,13 @@ impl<Y: Dae> Engine<f64> for Ida<Y> {
             at.time = time;
             at.q.copy_from_slice(&y[..n]);
             at.v.copy_from_slice(&y[n..2 * n]);
-            self.quadrature.within(time, &mut at.integrals);
+            if self.quadrature.wants_looks(now - began) {
+                let gained = self.gather(time)?;
+                let sums = self.quadrature.before().iter().zip(gained);
+                at.integrals.iter_mut().zip(sums).for_each(|(at, (before, g))| *at = before + g);
+            } else {
+                self.quadrature.within(time, &mut at.integrals);
+            }
         }
         Ok(())
     }
@@ -335,6 +360,12 @@ impl<Y: Dae> Engine<f64> for Ida<Y> {
             count("error_test_failures", ida.error_test_failures),
         ]
     }
+}
+
+/// Typical rate (rad/s) at which a system of these typical sizes of q and v turns.
+fn typical_turning((coordinates, velocities): (&[f64], &[f64])) -> f64 {
+    let rates = coordinates.iter().zip(velocities).map(|(size, rate)| rate / size);
+    rates.fold(0.0, f64::max)
 }
 
 /// The state at a time between two states that are within rounding.

@@ -8,6 +8,10 @@
 //! The powers carry the noise of the tolerance from step to step. Nodes that lie close together,
 //! measured by the length of the newest step, would only turn it into large differences, so they
 //! are left out: after a restart, while steps double, and behind a step cut short by an end time.
+//!
+//! IDA's steps are as long as the trajectory lets them be, which in free flight is far too long
+//! for powers that turn with a crank. Over a step in which anything turns noticeably, the powers
+//! are therefore asked for inside it.
 
 /// Most nodes that the polynomial goes through.
 const NODES: usize = 6;
@@ -17,6 +21,12 @@ const NODES: usize = 6;
 /// The weights' magnitudes then sum up to 4 lengths while steps double (167 with all nodes), to 17
 /// at most while they grow by less, and to 2.3 while they are equal.
 const NEAREST: f64 = 0.25;
+
+/// A step in which the system turns further than this (rad) is looked into, ...
+const NOTICEABLE_TURN: f64 = 1e-2;
+
+/// ... in panels in which it turns no further than this (rad).
+const PANEL_TURN: f64 = 5e-2;
 
 /// Abscissas and weights of Gauss–Legendre quadrature over (−1, 1), exact to degree five.
 const GAUSS: [(f64, f64); 3] =
@@ -43,11 +53,13 @@ pub(super) struct Quadrature {
     totals: Vec<f64>,
     /// What rounding took from `totals` so far (J).
     lost: Vec<f64>,
+    /// Typical rate at which the system turns (rad/s).
+    turning: f64,
 }
 
 impl Quadrature {
-    /// Space for a number of integrals.
-    pub(super) fn new(integrals: usize) -> Self {
+    /// Space for a number of integrals of a system that typically turns at a rate (rad/s).
+    pub(super) fn new(integrals: usize, turning: f64) -> Self {
         let zeros = vec![0.0; integrals];
         let node = Node { time: 0.0, powers: zeros.clone() };
         Quadrature {
@@ -56,7 +68,36 @@ impl Quadrature {
             before: zeros.clone(),
             totals: zeros.clone(),
             lost: zeros,
+            turning,
         }
+    }
+
+    /// Whether powers are wanted inside a step of this length (s).
+    pub(super) fn wants_looks(&self, length: f64) -> bool {
+        !self.totals.is_empty() && length * self.turning > NOTICEABLE_TURN
+    }
+
+    /// Times (s) and weights (s) of the powers wanted from one time to another.
+    pub(super) fn looks(&self, from: f64, to: f64) -> impl Iterator<Item = (f64, f64)> + use<> {
+        let panels = ((to - from) * self.turning / PANEL_TURN).ceil().max(1.0);
+        let half = 0.5 * (to - from) / panels;
+        (0..panels as u64).flat_map(move |panel| {
+            let middle = from + half * (2.0 * panel as f64 + 1.0);
+            GAUSS.map(|(abscissa, weight)| (middle + half * abscissa, half * weight))
+        })
+    }
+
+    /// Replaces what the latest step added by these integrals over it (J).
+    pub(super) fn correct(&mut self, gained: &[f64]) {
+        for ((total, before), gained) in self.totals.iter_mut().zip(&self.before).zip(gained) {
+            *total = before + gained;
+        }
+        self.lost.fill(0.0);
+    }
+
+    /// Integrals (J) at the begin of the latest step.
+    pub(super) fn before(&self) -> &[f64] {
+        &self.before
     }
 
     /// Begins anew at a time (s) with these powers (W) and integrals (J).
@@ -186,7 +227,7 @@ mod tests {
         powers: impl Fn(f64) -> [f64; 2],
         integrals: impl Fn(f64) -> [f64; 2],
     ) -> f64 {
-        let mut quadrature = Quadrature::new(2);
+        let mut quadrature = Quadrature::new(2, 1.0);
         let mut time = 0.25;
         quadrature.restart(time, &powers(time), &integrals(time));
         let mut worst = 0.0_f64;
@@ -220,7 +261,7 @@ mod tests {
     #[test]
     fn polynomials_of_degree_five_are_exact_once_six_nodes_are_there() {
         let lengths = [0.1, 0.13, 0.08, 0.11, 0.2, 0.15, 0.1, 0.1];
-        let mut quadrature = Quadrature::new(1);
+        let mut quadrature = Quadrature::new(1, 1.0);
         let (power, integral) = (|t: f64| t.powi(5), |t: f64| t.powi(6) / 6.0);
         let mut time = 0.0;
         quadrature.restart(time, &[power(time)], &[0.0]);
@@ -241,7 +282,7 @@ mod tests {
         let mut lengths = steps_after_a_restart(1e-4, 40);
         lengths.extend([1e-4, 1e-13, 1e-4, 1e-4, 1e-13, 1e-13, 2e-13, 1e-4]);
         let noise = 1e-6;
-        let mut quadrature = Quadrature::new(1);
+        let mut quadrature = Quadrature::new(1, 1.0);
         quadrature.restart(0.0, &[1.0], &[0.0]);
         let (mut time, mut sign) = (0.0, noise);
         for length in lengths {
@@ -256,7 +297,7 @@ mod tests {
 
     #[test]
     fn the_ends_of_a_step_have_the_integrals_of_its_ends() {
-        let mut quadrature = Quadrature::new(1);
+        let mut quadrature = Quadrature::new(1, 1.0);
         quadrature.restart(1.0, &[3.0], &[10.0]);
         let mut at = [0.0];
         quadrature.within(1.0, &mut at);
@@ -272,14 +313,14 @@ mod tests {
 
     #[test]
     fn small_increments_are_not_lost_in_a_large_sum() {
-        let mut quadrature = Quadrature::new(1);
+        let mut quadrature = Quadrature::new(1, 1.0);
         quadrature.restart(0.0, &[1.0], &[1e3]);
         let step = 2.0_f64.powi(-30);
         for i in 1..=100_000 {
             quadrature.advance(f64::from(i) * step, &[0.1]);
         }
         // The first step interpolates from 1 to 0.1; the second and third see that edge too.
-        let mut same = Quadrature::new(1);
+        let mut same = Quadrature::new(1, 1.0);
         same.restart(0.0, &[1.0], &[0.0]);
         for i in 1..=100_000 {
             same.advance(f64::from(i) * step, &[0.1]);
