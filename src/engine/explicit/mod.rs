@@ -4,7 +4,7 @@
 //! is the independent check and the fast lane, in 71 digits the truth.
 //!
 //! - **Steps**: an eighth-order Runge–Kutta method in double precision, extrapolation of the
-//!   midpoint rule with as many columns as pay otherwise. Both work on the vector of [`flow`],
+//!   midpoint rule with as many columns as pay otherwise. Both work on the vector of `flow.rs`,
 //!   in which contacts are analytic from end to end. Cosines and sines of the turning frames are
 //!   components, set anew from the angles at each step's begin. What rounding takes from a sum
 //!   of state and increment is kept and added to the next.
