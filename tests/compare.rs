@@ -166,7 +166,7 @@ fn a_certified_reference_grants_no_more_than_its_certificate_and_brings_its_scal
     let digits: Vec<f64> = (0..=100).map(|k| if k < 50 { 22.0 } else { 5.25 }).collect();
     compared::add(&reference, "reference_digits", &digits);
     compared::add_attribute(&reference, "scale_angular_velocity", 1e3);
-    compared::add_attribute(&reference, "scale_clearance_A", 2e-3);
+    compared::add_attribute(&reference, "scale_clearance_0", 2e-3);
     let json = trial.json(&copy, &reference, &[]);
     assert_eq!(json["certified_digits"], 5.25);
     assert_eq!(json["gate"]["fewest"]["digits"], 5.25);
