@@ -79,7 +79,8 @@ impl Schedule {
     pub fn time<S: Scalar>(&self, k: u64) -> S {
         match &self.grid {
             Grid::Uniform { interval, multiples, .. } if k < *multiples => {
-                S::from_octuple(F256::from(k) * *interval)
+                // the product, rounded, may pass a duration that it equals in decimals
+                S::from_octuple((F256::from(k) * *interval).min(self.duration))
             }
             Grid::Uniform { .. } => self.duration(),
             // a duration with more digits than a double has may lie before its own rounding
@@ -138,15 +139,25 @@ mod tests {
     }
 
     #[test]
-    fn times_are_decimals_in_any_arithmetic_and_none_lies_beyond_the_duration() {
-        let duration = "0.10000000000000000000001";
-        let by_grid = schedule(duration, "3e-5");
-        let by_times = schedule(duration, "1").at(vec![3e-5, 0.09999, 0.1]);
-        assert_eq!(by_times.time::<F256>(0), by_grid.time::<F256>(1));
-        assert_eq!(by_times.time::<F256>(1), by_grid.time::<F256>(3333));
-        // the double nearest to 0.0999… is 0.1
-        let duration = "0.09999999999999999999999";
-        let by_times = schedule(duration, "1").at(vec![0.1]);
-        assert_eq!(by_times.time::<F256>(0), by_times.duration::<F256>());
+    fn times_of_ones_own_are_decimals_in_any_arithmetic() {
+        let by_grid = schedule("0.1", "3e-5");
+        let by_times = schedule("0.1", "1").at(vec![3e-5, 0.09999, 0.1]);
+        for (own, multiple) in [(0, 1), (1, 3333)] {
+            let apart = by_times.time::<F256>(own) - by_grid.time(multiple);
+            assert!(apart.abs() < F256::from_f64(1e-70), "{own}: {apart:?}");
+        }
+    }
+
+    #[test]
+    fn no_sample_lies_beyond_the_duration_in_any_arithmetic() {
+        // the double nearest to this duration is 0.1
+        let longer = schedule("0.09999999999999999999999", "1").at(vec![0.1]);
+        assert_eq!(longer.time::<F256>(0), longer.duration());
+        assert_eq!(longer.time::<f64>(0), 0.1);
+        for (duration, interval) in [("0.003", "0.001"), ("0.012", "1e-3"), ("0.06", "1e-5")] {
+            let schedule = self::schedule(duration, interval);
+            let last: F256 = schedule.time(schedule.len() - 1);
+            assert_eq!(last, schedule.duration(), "{duration} by {interval}");
+        }
     }
 }

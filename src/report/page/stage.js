@@ -95,7 +95,7 @@ export class Stage {
     const choices = Array.from({ length: count }, (_, k) => k + 1);
     const columns = choices.reduce((best, columns) => (size(columns) > 1.001 * size(best) ? columns : best));
     const rows = Math.ceil(count / columns);
-    const cell = { width: width / columns, height: (height - 24) / rows };
+    const cell = { width: width / columns, height: (height - (count > 1 ? 24 : 0)) / rows };
     return this.shown.map((_, k) => ({ ...cell, left: (k % columns) * cell.width, top: Math.floor(k / columns) * cell.height }));
   }
 
