@@ -143,7 +143,7 @@ mod tests {
         let by_grid = schedule("0.1", "3e-5");
         let by_times = schedule("0.1", "1").at(vec![3e-5, 0.09999, 0.1]);
         for (own, multiple) in [(0, 1), (1, 3333)] {
-            let apart = by_times.time::<F256>(own) - by_grid.time(multiple);
+            let apart = by_times.time::<F256>(own) - by_grid.time::<F256>(multiple);
             assert!(apart.abs() < F256::from_f64(1e-70), "{own}: {apart:?}");
         }
     }
