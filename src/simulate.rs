@@ -86,8 +86,8 @@ impl<'a> Simulation<'a> {
         &self.schedule
     }
 
-    /// The same simulation, sampled at exactly these times (s): one or more, strictly increasing,
-    /// none negative, none beyond the case's duration. The trajectory does not depend on them.
+    /// The same simulation, sampled at these times (s) and nowhere else; see [`Schedule::at`]. The
+    /// trajectory does not depend on them.
     pub fn sampled_at(mut self, times: Vec<f64>) -> Self {
         self.schedule = self.schedule.at(times);
         self

@@ -1,10 +1,10 @@
 //! `freeplay compare THEIRS REFERENCE`
 
 use super::Failure;
+use super::signals::Signals;
 use crate::compare::{self, Comparison, Map, Request};
 use crate::run::Progress;
 use indicatif::{ProgressBar, ProgressStyle};
-use std::ops::ControlFlow;
 use std::path::PathBuf;
 
 /// Most digits that can be required: doubles carry hardly more.
@@ -55,17 +55,18 @@ pub(super) fn compare(arguments: &Arguments) -> Result<(), Failure> {
         common_times: arguments.common_times,
         maps: &arguments.map,
     };
+    let signals = Signals::new().map_err(Failure::output)?;
     let bar = ProgressBar::no_length();
     let style = ProgressStyle::with_template("{spinner} {msg}");
     bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_spinner()));
     let mut watch = |progress: &Progress| {
         bar.set_message(format!("the reference's case is at {:.6} s", progress.time));
         bar.tick();
-        ControlFlow::Continue(())
+        signals.flow()
     };
     let compared = Comparison::new(&arguments.theirs, &arguments.reference, &request, &mut watch);
     bar.finish_and_clear();
-    let comparison = compared.map_err(failure)?;
+    let comparison = compared.map_err(|error| failure(error, &signals))?;
     match arguments.json {
         true => super::print(format_args!("{}\n", comparison.json(arguments.require_digits))),
         false => super::print(&comparison),
@@ -91,8 +92,10 @@ impl Arguments {
 }
 
 /// What cannot be simulated is 4, anything else bad input.
-fn failure(error: compare::Error) -> Failure {
-    let simulation =
-        matches!(error, compare::Error::Again { .. } | compare::Error::NotReproduced { .. });
-    Failure::with(if simulation { 4 } else { 2 }, error)
+fn failure(error: compare::Error, signals: &Signals) -> Failure {
+    use compare::Error::{Again, Interrupted, NotReproduced};
+    match error {
+        Again { .. } | Interrupted | NotReproduced { .. } => signals.failure(error),
+        _ => Failure::input(error),
+    }
 }

@@ -9,7 +9,7 @@ use super::scale::Scales;
 use super::series::{Aligned, Certificate, Series};
 use super::source::{Source, Trajectory, case_in};
 use super::{Error, mechanism, note};
-use crate::case::Case;
+use crate::case::{Case, Changes};
 use crate::model::{JointDescription, JointKind};
 use crate::record::{self, DATASETS, ResultFile};
 use crate::run::Watcher;
@@ -186,7 +186,8 @@ impl Subject {
     /// Neither file is a result, or they are of two mechanisms.
     fn of(files: &[Source; 2]) -> Result<Subject, Error> {
         let read = |file: &ResultFile| -> Result<Subject, Error> {
-            let subject = Subject { parts: Parts::of(file), case: case_in(file, "case_toml")? };
+            let subject =
+                Subject { parts: Parts::of(file), case: case_in(file, &Changes::default())? };
             if subject.radial().len() == subject.parts.0.clearances.len() {
                 return Ok(subject);
             }
@@ -229,7 +230,7 @@ impl Subject {
         let Trajectory { columns, values, .. } = &reference.trajectory;
         let scales = Scales::measure(columns, values, self.radial());
         match reference.result() {
-            Some(file) => scales.with_those_of(file, &self.parts),
+            Some(file) => scales.with_those_of(file),
             None => scales,
         }
     }

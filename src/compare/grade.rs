@@ -6,8 +6,7 @@
 //! u is half a unit in the last place of the reference's number: so much of the truth is lost by
 //! writing it down in a double. What is not a number agrees with nothing.
 
-/// Most digits that are told.
-pub const MOST_DIGITS: f64 = 16.0;
+use crate::certify::MOST_DIGITS;
 
 /// How well a number, or the worst of several, agrees with its reference.
 #[derive(Debug, Clone, Copy, PartialEq)]

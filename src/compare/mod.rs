@@ -24,7 +24,7 @@ mod unit;
 pub use comparison::{Comparison, Identity, MappedName, Request, Side};
 pub use error::Error;
 pub use event::{ContactPair, EventComparison, EventRow, Pair, Unmatched};
-pub use grade::{Grade, Hold, MOST_DIGITS};
+pub use grade::{Grade, Hold};
 pub use mapping::{How, Map, NotAMap};
 pub use quantity::{Column, Part, Parts, Quantity};
 pub use reference::Way;

@@ -5,14 +5,14 @@
 //! file has samples. These must come out as they stand in the file, else nothing is trusted. There
 //! is no interpolation.
 //!
-//! The case is the text in the attribute `case_toml`; where the samples were made with other
-//! settings than those of the case they belong to, as a certified reference is, it is that in
-//! `reference_toml`.
+//! The case is the text in the attribute `case_toml`, as run. The samples of a certified reference
+//! were not made with its settings, but in 71 digits at the tolerance in `reference_tolerance_tight`.
 
 use super::Error;
 use super::quantity::{Column, Part, Parts, Quantity};
 use super::scale::Scales;
 use super::source::{Trajectory, case_in};
+use crate::case::Changes;
 use crate::mechanism::Observation;
 use crate::record::{self, ResultFile};
 use crate::run::{Contact, Event, Peak, Progress, Recorder, Watcher};
@@ -113,11 +113,22 @@ impl Reference<'_> {
         checks
     }
 
+    /// What the samples were made with that the case does not say.
+    fn changes(&self) -> Changes {
+        let Some(tolerance) = self.file.number("reference_tolerance_tight") else {
+            return Changes::default();
+        };
+        let set = [
+            "solver.engine=explicit".to_owned(),
+            "solver.precision=71".to_owned(),
+            format!("solver.reference_tolerance={tolerance:e}"),
+        ];
+        Changes { set: set.iter().filter_map(|set| set.parse().ok()).collect(), ideal: false }
+    }
+
     /// Runs the case, sampled at these times, until the last of them.
     fn simulate(&self, times: &[f64], watch: Watcher<'_>) -> Result<Vec<Vec<f64>>, Error> {
-        let held = "reference_toml";
-        let held = if self.file.text(held).is_some() { held } else { "case_toml" };
-        let case = case_in(self.file, held)?;
+        let case = case_in(self.file, &self.changes())?;
         let simulation = Simulation::new(&case).map_err(|source| Error::Case {
             path: self.file.path().to_owned(),
             source: Box::new(source),

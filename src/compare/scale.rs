@@ -9,12 +9,12 @@
 //! forces            the largest of any joint or clearance
 //! torques, moments  the largest
 //! ```
-//! All are taken from the reference. One that was certified carries its own, in the attributes
-//! `scale_angle`, `scale_angular_velocity`, `scale_velocity`, `scale_force` and so on, and
-//! `scale_clearance_<name>` for each clearance.
+//! All are taken from the reference, and are 1 where it has nothing but zeros. A certified one
+//! carries its own, in the attributes `scale_angle`, `scale_angular_velocity`, `scale_velocity`,
+//! `scale_force`, `scale_torque` and, for each clearance by its index, `scale_clearance_0`.
 
-use super::quantity::{Column, Parts, Quantity};
-use crate::record::{Attribute, ResultFile};
+use super::quantity::{Column, Quantity};
+use crate::record::ResultFile;
 
 /// The scale of every quantity.
 #[derive(Debug, Clone, PartialEq)]
@@ -35,47 +35,31 @@ impl Scales {
                 .zip(values)
                 .filter(move |(column, _)| column.quantity() == Some(quantity))
         };
-        let measured = |quantity: Quantity| match quantity {
-            Quantity::Angle => 1.0,
-            Quantity::Clearance => f64::NAN,
-            Quantity::Velocity => largest_speed(of(quantity)),
-            Quantity::Position => {
-                of(quantity).map(|(_, values)| extent(values)).fold(0.0, f64::max)
-            }
-            _ => of(quantity).map(|(_, values)| largest(values)).fold(0.0, f64::max),
+        let measured = |quantity: Quantity| {
+            let largest = match quantity {
+                Quantity::Angle | Quantity::Clearance => 1.0,
+                Quantity::Position => {
+                    of(quantity).map(|(_, values)| extent(values)).fold(0.0, f64::max)
+                }
+                _ => largest_magnitude(of(quantity)),
+            };
+            if largest > 0.0 { largest } else { 1.0 }
         };
         Scales { values: Quantity::ALL.map(measured), clearances: radial }
     }
 
     /// Puts the scales that a result file carries in place of those measured.
-    pub fn with_those_of(mut self, file: &ResultFile, parts: &Parts) -> Scales {
+    pub fn with_those_of(mut self, file: &ResultFile) -> Scales {
         for (scale, quantity) in self.values.iter_mut().zip(Quantity::ALL) {
-            if let Some(carried) = file.number(&attribute(quantity)) {
-                *scale = carried;
-            }
+            *scale = file.number(&format!("scale_{}", quantity.name())).unwrap_or(*scale);
         }
-        for (scale, name) in self.clearances.iter_mut().zip(&parts.0.clearances) {
-            if let Some(carried) = file.number(&clearance_attribute(name)) {
-                *scale = carried;
-            }
+        for (k, scale) in self.clearances.iter_mut().enumerate() {
+            *scale = file.number(&format!("scale_clearance_{k}")).unwrap_or(*scale);
         }
         self
     }
 
-    /// The scales as attributes of a result file, those of quantities that were not looked at (0)
-    /// left out.
-    pub fn attributes(&self, parts: &Parts) -> Vec<(String, Attribute)> {
-        let values = Quantity::ALL.into_iter().zip(self.values);
-        let plain = values
-            .filter(|(_, scale)| *scale > 0.0)
-            .map(|(quantity, scale)| (attribute(quantity), Attribute::from(scale)));
-        let clearances = parts.0.clearances.iter().zip(&self.clearances);
-        let clearances =
-            clearances.map(|(name, scale)| (clearance_attribute(name), Attribute::from(*scale)));
-        plain.chain(clearances).collect()
-    }
-
-    /// The scale of a column, in its unit; 0 where the reference has nothing but zeros.
+    /// The scale of a column, in its unit.
     pub fn of(&self, column: &Column) -> f64 {
         match column.quantity() {
             Some(Quantity::Clearance) => self.clearances[column.item],
@@ -85,19 +69,6 @@ impl Scales {
     }
 }
 
-fn attribute(quantity: Quantity) -> String {
-    format!("scale_{}", quantity.name())
-}
-
-fn clearance_attribute(name: &str) -> String {
-    format!("scale_clearance_{name}")
-}
-
-/// Largest magnitude, what is no number left out.
-fn largest(values: &[f64]) -> f64 {
-    values.iter().map(|value| value.abs()).fold(0.0, f64::max)
-}
-
 /// Distance of the largest from the smallest value, what is no number left out.
 fn extent(values: &[f64]) -> f64 {
     let highest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
@@ -105,18 +76,22 @@ fn extent(values: &[f64]) -> f64 {
     (highest - lowest).max(0.0)
 }
 
-/// Largest speed of any body, from its components; from one where the other is missing.
-fn largest_speed<'a>(columns: impl Iterator<Item = (&'a Column, &'a Vec<f64>)>) -> f64 {
-    let mut squares: Vec<(usize, Vec<f64>)> = Vec::new();
+/// Largest magnitude of any item: of a vector where both components are there, else of the one;
+/// what is no number is left out.
+fn largest_magnitude<'a>(columns: impl Iterator<Item = (&'a Column, &'a Vec<f64>)>) -> f64 {
+    let mut squares: Vec<((&str, usize), Vec<f64>)> = Vec::new();
     for (column, values) in columns {
-        match squares.iter_mut().find(|(body, _)| *body == column.item) {
+        let name = column.dataset.name;
+        let vector = name.strip_suffix("_x").or_else(|| name.strip_suffix("_y"));
+        let what = (vector.unwrap_or(name), column.item);
+        match squares.iter_mut().find(|(known, _)| *known == what) {
             Some((_, sums)) => {
                 sums.iter_mut().zip(values).for_each(|(sum, value)| *sum += value * value);
             }
-            None => squares.push((column.item, values.iter().map(|value| value * value).collect())),
+            None => squares.push((what, values.iter().map(|value| value * value).collect())),
         }
     }
-    squares.iter().map(|(_, sums)| largest(sums)).fold(0.0, f64::max).sqrt()
+    squares.iter().flat_map(|(_, sums)| sums).copied().fold(0.0, f64::max).sqrt()
 }
 
 #[cfg(test)]
@@ -136,8 +111,9 @@ mod tests {
                 "velocity_y.coupler" => vec![-4.0, 5.0],
                 "velocity_x.follower" => vec![-12.5, 0.0],
                 "position_x.follower" => vec![-0.25, 0.5],
-                "normal_force.A" => vec![0.0, 13e3],
-                "joint_force_y.B0" => vec![-2e3, 0.0],
+                "normal_force.A" => vec![0.0, 9e3],
+                "joint_force_x.B0" => vec![5e3, 9e3],
+                "joint_force_y.B0" => vec![-12e3, 0.0],
                 _ => vec![0.0, 0.0],
             })
             .collect();
@@ -151,6 +127,6 @@ mod tests {
         assert_eq!(scale("clearance_y.A"), 1e-3);
         assert_eq!(scale("position_y.crank"), 0.75);
         assert_eq!(scale("joint_force_x.B"), 13e3);
-        assert_eq!(scale("joint_moment.A"), 0.0);
+        assert_eq!(scale("joint_moment.A"), 1.0);
     }
 }

@@ -56,11 +56,15 @@ impl Source {
             Source::Result(file) => {
                 let text = |name| file.text(name).unwrap_or("?");
                 let mut words = format!("freeplay result of case {}", text("case_name"));
-                if let Some(engine) = file.text("engine") {
-                    words += &format!(", engine {engine}");
-                }
-                if let Some(tolerance) = file.number("relative_tolerance") {
-                    words += &format!(", relative tolerance {tolerance:e}");
+                match file.number("reference_tolerance_tight") {
+                    Some(tolerance) => {
+                        words += &format!(", in 71 digits, tolerance {tolerance:e}");
+                    }
+                    None => {
+                        let engine = file.text("engine").unwrap_or("?");
+                        let tolerance = file.number("relative_tolerance").unwrap_or(f64::NAN);
+                        words += &format!(", engine {engine}, relative tolerance {tolerance:e}");
+                    }
                 }
                 if !file.is_complete() {
                     words += &format!("; the run is {}", text("run_status"));
@@ -71,12 +75,12 @@ impl Source {
     }
 }
 
-/// Reads the case that a result holds in its attribute `name`.
-pub fn case_in(file: &ResultFile, name: &str) -> Result<Case, Error> {
-    let Some(text) = file.text(name) else {
+/// Reads the case that a result holds, with changes.
+pub fn case_in(file: &ResultFile, changes: &Changes) -> Result<Case, Error> {
+    let Some(text) = file.text("case_toml") else {
         return Err(Error::NoCase { path: file.path().to_owned() });
     };
-    Case::from_text(file.path(), text, &Changes::default())
+    Case::from_text(file.path(), text, changes)
         .map_err(|source| Error::Case { path: file.path().to_owned(), source: Box::new(source) })
 }
 

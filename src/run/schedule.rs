@@ -21,7 +21,7 @@ enum Grid {
         multiples: u64,
         ends_between: bool,
     },
-    At(Vec<f64>),
+    At(Vec<Decimal>),
 }
 
 impl Schedule {
@@ -38,13 +38,16 @@ impl Schedule {
         Schedule { duration, grid, adaptive: false }
     }
 
-    /// The same run, sampled at exactly these times (s) and nowhere else: one or more, strictly
-    /// increasing, none negative, none beyond the duration rounded to a double.
+    /// The same run, sampled at these times (s) and nowhere else: one or more, strictly increasing,
+    /// none negative, none beyond the duration rounded to a double. Each means the shortest decimal
+    /// that reads back as it, as numbers of a case do: so the times that a result file holds are
+    /// those its samples were taken at, in any arithmetic.
     pub fn at(self, times: Vec<f64>) -> Self {
         let last = times.last().copied().unwrap_or(f64::NAN);
         let within = times.first() >= Some(&0.0) && last <= self.duration.to_f64();
         let increasing = times.windows(2).all(|pair| pair[0] < pair[1]);
         assert!(within && increasing, "sample times increase from 0 to the duration");
+        let times = times.into_iter().map(Decimal::from).collect();
         Schedule { grid: Grid::At(times), adaptive: false, ..self }
     }
 
@@ -80,8 +83,8 @@ impl Schedule {
                 S::from_octuple((F256::from(k) * *interval).min(self.duration))
             }
             Grid::Uniform { .. } => self.duration(),
-            // the duration, rounded to a double, may lie beyond itself
-            Grid::At(times) => S::from_f64(times[k as usize]).min(self.duration()),
+            // a duration with more digits than a double has may lie before its own rounding
+            Grid::At(times) => times[k as usize].value::<S>().min(self.duration()),
         }
     }
 
@@ -136,11 +139,21 @@ mod tests {
     }
 
     #[test]
+    fn times_of_ones_own_are_decimals_in_any_arithmetic() {
+        let by_grid = schedule("0.1", "3e-5");
+        let by_times = schedule("0.1", "1").at(vec![3e-5, 0.09999, 0.1]);
+        for (own, multiple) in [(0, 1), (1, 3333)] {
+            let apart = by_times.time::<F256>(own) - by_grid.time::<F256>(multiple);
+            assert!(apart.abs() < F256::from_f64(1e-70), "{own}: {apart:?}");
+        }
+    }
+
+    #[test]
     fn no_sample_lies_beyond_the_duration_in_any_arithmetic() {
-        // the double nearest to 0.1 is larger than 0.1
-        let schedule = schedule("0.1", "0.1").at(vec![0.1]);
-        assert!(schedule.time::<F256>(0) <= schedule.duration());
-        assert_eq!(schedule.time::<f64>(0), 0.1);
+        // the double nearest to this duration is 0.1
+        let longer = schedule("0.09999999999999999999999", "1").at(vec![0.1]);
+        assert_eq!(longer.time::<F256>(0), longer.duration());
+        assert_eq!(longer.time::<f64>(0), 0.1);
         for (duration, interval) in [("0.003", "0.001"), ("0.012", "1e-3"), ("0.06", "1e-5")] {
             let schedule = self::schedule(duration, interval);
             let last: F256 = schedule.time(schedule.len() - 1);

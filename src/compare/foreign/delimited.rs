@@ -266,4 +266,14 @@ mod tests {
     fn a_file_that_ends_within_a_line_is_noticed() {
         assert!(table("t,phi\n0,1\n0.5,2.3").ends_within_a_line);
     }
+
+    proptest::proptest! {
+        #[test]
+        fn any_text_is_read_or_refused(text in "([a-z#%;,\t\" .0-9é-]{0,12}\r?\n?){0,6}") {
+            if let Ok(table) = read(Path::new("theirs.csv"), &text) {
+                let rows = table.columns[0].values.len();
+                assert!(table.columns.iter().all(|column| column.values.len() == rows));
+            }
+        }
+    }
 }
