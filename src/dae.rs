@@ -87,6 +87,21 @@ pub trait System<S: Scalar> {
     /// Evaluates the system at a state; the functions named `…` after this one answer for it.
     fn evaluate(&mut self, state: State<'_, S>) -> Result<(), Fault>;
 
+    /// Evaluates the system at a state, as [`evaluate`](Self::evaluate) does, where an engine
+    /// carries the root σ = g^[`power`](Watch::power) of some event functions g along with the
+    /// state: `roots[k]`, with its sign, is that of function k. What the system computes from g
+    /// it then takes from σ, with no look at the sign of g and none at that of σ, so that the
+    /// accelerations are analytic in state and roots together. A system that has no power but one
+    /// need not provide it.
+    fn evaluate_with_roots(
+        &mut self,
+        state: State<'_, S>,
+        roots: &[Option<S>],
+    ) -> Result<(), Fault> {
+        let _ = roots;
+        self.evaluate(state)
+    }
+
     /// v̇ at the state last evaluated (m/s², rad/s²).
     fn accelerations(&self) -> &[S];
 
@@ -210,6 +225,13 @@ pub trait Engine<S: Scalar> {
 
     /// State at a time within the last step, to the accuracy of the engine.
     fn within(&mut self, time: S, at: &mut Snapshot<S>) -> Result<(), Self::Error>;
+
+    /// State near a time within the last step, to a relative accuracy; `at.time` tells where it
+    /// is. Cheaper than [`Engine::within`] where landing on a time takes work.
+    fn glance(&mut self, time: S, accuracy: f64, at: &mut Snapshot<S>) -> Result<(), Self::Error> {
+        let _ = accuracy;
+        self.within(time, at)
+    }
 
     /// Which event functions passed zero at the end of the last step; all false if none did.
     fn fired(&self) -> &[bool];

@@ -1,12 +1,15 @@
 //! From a checked case to a finished run: which arithmetic, which engine, which loop.
 
-use crate::case::{self, Case, EngineName, NormName, Sampling, SolverPlan};
+use crate::case::{self, Case, EngineName, NormName, Precision, Sampling, SolverPlan};
 use crate::dae::{Count, Engine};
+use crate::engine::explicit::{self, Explicit};
 use crate::engine::ida::{self, Ida};
 use crate::mechanism::Mechanism;
 use crate::model::Model;
 use crate::record::{Attribute, Header};
 use crate::run::{self, Recorder, RulingCounts, Schedule, Watcher};
+use crate::scalar::{Dual, F256, Scalar};
+use std::convert::Infallible;
 use std::error::Error as StdError;
 
 /// Why a simulation did not finish.
@@ -29,6 +32,17 @@ pub enum Error<R: StdError + 'static> {
         /// Where the run stood (s).
         time: f64,
     },
+}
+
+impl Error<Infallible> {
+    /// The same, of a simulation with another recorder.
+    pub fn forget_recorder<R: StdError + 'static>(self) -> Error<R> {
+        match self {
+            Error::Failed { case, source } => Error::Failed { case, source },
+            Error::Interrupted { time } => Error::Interrupted { time },
+            Error::Recorder(never) => match never {},
+        }
+    }
 }
 
 /// What a finished simulation tells of itself.
@@ -54,14 +68,12 @@ impl<'a> Simulation<'a> {
     /// # Errors
     /// Complaints about the mechanism, with the lines of the case file.
     pub fn new(case: &'a Case) -> Result<Self, case::Error> {
-        let model = Model::new(&case.description).map_err(|complaints| case.reject(complaints))?;
-        let mechanism = Mechanism::new(model).map_err(|complaints| case.reject(complaints))?;
         let schedule = Schedule::new(&case.plan.duration, &case.plan.sample_interval);
         let schedule = match case.plan.sampling {
             Sampling::Uniform => schedule,
             Sampling::Adaptive => schedule.adaptive(),
         };
-        Ok(Simulation { case, mechanism, schedule })
+        Ok(Simulation { case, mechanism: assemble(case)?, schedule })
     }
 
     /// The assembled mechanism.
@@ -86,33 +98,136 @@ impl<'a> Simulation<'a> {
     ///
     /// # Errors
     /// See [`Error`].
-    pub fn run<R: Recorder>(
-        self,
-        recorder: &mut R,
-        watch: Watcher<'_>,
-    ) -> (Statistics, Result<(), Error<R::Error>>) {
-        let mut mechanism = self.mechanism;
-        let name = self.case.name.clone();
-        if mechanism.freedoms() == 0 && mechanism.modes().is_empty() {
-            let ran = run::kinematic(&mut mechanism, &self.schedule, recorder, watch);
-            return finish(&name, Vec::new(), ran);
-        }
-        let mut engine = match Ida::new(mechanism, ida_options(&self.case.plan.solver)) {
-            Ok(engine) => engine,
-            Err(source) => {
-                let failed = Error::Failed { case: name, source: Box::new(source) };
-                return (Statistics::default(), Err(failed));
+    pub fn run<R: Recorder>(self, recorder: &mut R, watch: Watcher<'_>) -> Ran<R> {
+        let solver = &self.case.plan.solver;
+        let Simulation { case, mechanism, schedule } = self;
+        match (solver.engine, solver.precision) {
+            _ if is_kinematic(&mechanism) => {
+                run_kinematic(case, mechanism, &schedule, recorder, watch)
             }
-        };
-        let tolerance = self.case.plan.solver.relative_tolerance;
-        let ran = run::run(&mut engine, &self.schedule, tolerance, recorder, watch);
-        finish(&name, engine.counts(), ran)
+            (EngineName::Ida, _) => {
+                let engine = Ida::new(mechanism, ida_options(solver));
+                carry(case, engine, &schedule, solver.relative_tolerance, recorder, watch)
+            }
+            (EngineName::Explicit, Precision::Double) => {
+                let options = explicit_options(solver, solver.relative_tolerance);
+                let engine = Explicit::new(mechanism, options);
+                carry(case, engine, &schedule, solver.relative_tolerance, recorder, watch)
+            }
+            (EngineName::Explicit, Precision::Octuple) => match assemble(case) {
+                Ok(mechanism) => {
+                    let tolerance = solver.reference_tolerance;
+                    run_reference(case, mechanism, &schedule, tolerance, recorder, watch)
+                }
+                Err(source) => failed::<R>(case, source),
+            },
+        }
     }
+}
+
+/// Statistics and outcome of a simulation.
+pub type Ran<R> = (Statistics, Result<(), Error<<R as Recorder>::Error>>);
+
+/// The mechanism of a case, assembled in the arithmetic `S`.
+///
+/// # Errors
+/// Complaints about the mechanism, with the lines of the case file.
+pub fn assemble<S: Scalar>(case: &Case) -> Result<Mechanism<S>, case::Error> {
+    let model = Model::new(&case.description).map_err(|complaints| case.reject(complaints))?;
+    Mechanism::new(model).map_err(|complaints| case.reject(complaints))
+}
+
+/// Runs a case on the explicit engine in 71-digit arithmetic, at a tolerance of its own.
+pub fn run_reference<R: Recorder>(
+    case: &Case,
+    mechanism: Mechanism<F256>,
+    schedule: &Schedule,
+    tolerance: f64,
+    recorder: &mut R,
+    watch: Watcher<'_>,
+) -> Ran<R> {
+    if is_kinematic(&mechanism) {
+        return run_kinematic(case, mechanism, schedule, recorder, watch);
+    }
+    let engine = Explicit::new(mechanism, explicit_options(&case.plan.solver, tolerance));
+    carry(case, engine, schedule, tolerance, recorder, watch)
+}
+
+/// Carries a tangent along: the explicit engine in dual numbers over the arithmetic `S`, whose
+/// derivative is that by a relative change of the start. What an observation knows
+/// [`beyond`](crate::mechanism::Observation::beyond) its doubles is then the tangent.
+pub fn run_tangent<S: Scalar, R: Recorder>(
+    case: &Case,
+    schedule: &Schedule,
+    tolerance: f64,
+    recorder: &mut R,
+    watch: Watcher<'_>,
+) -> Ran<R> {
+    let mechanism = assemble::<Dual<S>>(case).and_then(|mut mechanism| {
+        let scaled = mechanism.scale_start(Dual::new(S::one(), S::one()));
+        scaled.map_err(|complaints| case.reject(complaints))?;
+        Ok(mechanism)
+    });
+    match mechanism {
+        Ok(mechanism) if is_kinematic(&mechanism) => {
+            run_kinematic(case, mechanism, schedule, recorder, watch)
+        }
+        Ok(mechanism) => {
+            let engine = Explicit::new(mechanism, explicit_options(&case.plan.solver, tolerance));
+            carry(case, engine, schedule, tolerance, recorder, watch)
+        }
+        Err(source) => failed::<R>(case, source),
+    }
+}
+
+/// Whether nothing is left to integrate: no freedom and no clearance.
+fn is_kinematic<S: Scalar>(mechanism: &Mechanism<S>) -> bool {
+    mechanism.freedoms() == 0 && mechanism.modes().is_empty()
+}
+
+fn run_kinematic<S: Scalar, R: Recorder>(
+    case: &Case,
+    mut mechanism: Mechanism<S>,
+    schedule: &Schedule,
+    recorder: &mut R,
+    watch: Watcher<'_>,
+) -> Ran<R> {
+    let ran = run::kinematic(&mut mechanism, schedule, recorder, watch);
+    finish(case, Vec::new(), ran)
+}
+
+/// Runs an engine, if it could be made.
+fn carry<S, E, R>(
+    case: &Case,
+    engine: Result<E, E::Error>,
+    schedule: &Schedule,
+    tolerance: f64,
+    recorder: &mut R,
+    watch: Watcher<'_>,
+) -> Ran<R>
+where
+    S: Scalar,
+    E: Engine<S, System = Mechanism<S>>,
+    R: Recorder,
+{
+    match engine {
+        Ok(mut engine) => {
+            let ran = run::run(&mut engine, schedule, tolerance, recorder, watch);
+            finish(case, engine.counts(), ran)
+        }
+        Err(source) => failed::<R>(case, source),
+    }
+}
+
+/// The outcome of a simulation that could not begin.
+fn failed<R: Recorder>(case: &Case, source: impl StdError + Send + Sync + 'static) -> Ran<R> {
+    let error = Error::Failed { case: case.name.clone(), source: Box::new(source) };
+    (Statistics::default(), Err(error))
 }
 
 /// Statistics and outcome of a run, whatever engine it had.
 fn finish<E, R>(
-    name: &str,
+    case: &Case,
     engine: Vec<Count>,
     ran: Result<RulingCounts, run::Error<E, R>>,
 ) -> (Statistics, Result<(), Error<R>>)
@@ -128,9 +243,14 @@ where
     let outcome = ran.map(|_| ()).map_err(|error| match error {
         run::Error::Recorder(source) => Error::Recorder(source),
         run::Error::Interrupted { time } => Error::Interrupted { time },
-        failed => Error::Failed { case: name.to_owned(), source: Box::new(failed) },
+        failed => Error::Failed { case: case.name.clone(), source: Box::new(failed) },
     });
     (Statistics { engine, rulings }, outcome)
+}
+
+/// How the explicit engine is to solve, from the plan of a case.
+fn explicit_options(plan: &SolverPlan, tolerance: f64) -> explicit::Options {
+    explicit::Options { tolerance, max_step: plan.max_step, ..explicit::Options::default() }
 }
 
 /// How IDA is to solve, from the plan of a case.

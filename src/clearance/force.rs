@@ -41,15 +41,21 @@ impl<S: Scalar> Clearance<S> {
         Penetration { depth: gap.depth, rate, inverse_impact_rate: contact.inverse_impact_rate }
     }
 
-    /// The forces of a contact.
+    /// The forces of a contact; from the root of the depth, where that is known
+    /// ([`NormalLaw::force_from_root`](crate::contact::NormalLaw::force_from_root)).
     #[inline(always)]
     pub fn force(
         &self,
         contact: &Contact<S>,
         gap: &Gap<S>,
         rates: &GapRates<S>,
+        root: Option<S>,
     ) -> ContactForce<S> {
-        let mut normal = self.normal.force(self.penetration(contact, gap, rates.rate));
+        let penetration = self.penetration(contact, gap, rates.rate);
+        let mut normal = match root {
+            Some(root) => self.normal.force_from_root(penetration, root),
+            None => self.normal.force(penetration),
+        };
         if contact.pulling && self.cut_tension {
             normal = NormalForce { elastic: normal.elastic, ..NormalForce::none() };
         }

@@ -1,12 +1,17 @@
 //! The command line, one file a command.
 
+mod certify;
 mod check;
 mod compare;
+mod export;
 mod info;
 mod plot;
+mod report;
 mod run;
+mod signals;
 mod summary;
 
+use crate::case::{Case, Changes, Override};
 use clap::{Args, Parser, Subcommand};
 use std::error::Error as StdError;
 use std::path::PathBuf;
@@ -24,6 +29,8 @@ pub struct CommandLine {
 enum Command {
     /// Run a case and write its trajectory.
     Run(run::Arguments),
+    /// Say how many digits of a run are true, against references in 71-digit arithmetic.
+    Certify(certify::Arguments),
     /// Say what a case describes: freedoms, constraints, stiffnesses, defaults, rulings.
     Check(check::Arguments),
     /// Say what a result file holds and how it was made.
@@ -34,6 +41,10 @@ enum Command {
     Compare(compare::Arguments),
     /// Draw the figures of result files, as journals print them.
     Plot(plot::Arguments),
+    /// Write a result file for other tools: CSV, Parquet, OpenMBV.
+    Export(export::Arguments),
+    /// Write a page on one or several runs: summary, charts, the mechanism in motion.
+    Report(report::Arguments),
 }
 
 /// A case file, and what the command line changes in it.
@@ -44,16 +55,24 @@ struct CaseArguments {
     path: PathBuf,
     /// Change a key of the case, by its dotted path; the value is TOML, a bare word a string.
     #[arg(long, value_name = "KEY=VALUE")]
-    set: Vec<crate::case::Override>,
+    set: Vec<Override>,
     /// Remove every clearance: the ideal mechanism.
     #[arg(long)]
     ideal: bool,
 }
 
 impl CaseArguments {
-    fn read(&self) -> Result<crate::case::Case, Failure> {
-        let changes = crate::case::Changes { set: self.set.clone(), ideal: self.ideal };
-        crate::case::Case::read(&self.path, &changes).map_err(Failure::input)
+    fn read(&self) -> Result<Case, Failure> {
+        self.read_with(&[])
+    }
+
+    /// The case with more changes, `KEY=VALUE`.
+    fn read_with(&self, more: &[String]) -> Result<Case, Failure> {
+        let mut set = self.set.clone();
+        for change in more {
+            set.push(change.parse().map_err(Failure::input)?);
+        }
+        Case::read(&self.path, &Changes { set, ideal: self.ideal }).map_err(Failure::input)
     }
 }
 
@@ -116,11 +135,14 @@ fn print(result: impl std::fmt::Display) {
 pub fn main() -> ExitCode {
     let done = match CommandLine::parse().command {
         Command::Run(arguments) => run::run(&arguments),
+        Command::Certify(arguments) => certify::certify(&arguments),
         Command::Check(arguments) => check::check(&arguments),
         Command::Info(arguments) => info::info(&arguments),
         Command::Summary(arguments) => summary::summary(&arguments),
         Command::Compare(arguments) => compare::compare(&arguments),
         Command::Plot(arguments) => plot::plot(&arguments),
+        Command::Export(arguments) => export::export(&arguments),
+        Command::Report(arguments) => report::report(&arguments),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

@@ -1,15 +1,15 @@
 //! `freeplay run CASE`
 
+use super::signals::Signals;
 use super::{CaseArguments, Failure, chain};
-use crate::record::{Ending, Outcome, Writer, utc};
-use crate::run::Progress;
+use crate::case::Case;
+use crate::certify::{self, Tangent};
+use crate::mechanism::Observation;
+use crate::record::{self, Ending, Outcome, Writer, utc};
+use crate::run::{Contact, Event, Peak, Progress, Recorder};
 use crate::simulate::{self, Simulation, Statistics};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use signal_hook::consts::{SIGINT, SIGTERM};
-use std::ops::ControlFlow;
 use std::path::PathBuf;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::{Instant, SystemTime};
 
 /// Ticks of the progress bar over a whole run.
@@ -26,6 +26,9 @@ pub struct Arguments {
     /// Replace the output if it exists.
     #[arg(long)]
     force: bool,
+    /// Carry a tangent along: how errors grow, and how many digits doubles have left.
+    #[arg(long)]
+    tangent: bool,
     /// No progress on stderr.
     #[arg(short, long)]
     quiet: bool,
@@ -40,7 +43,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let header = simulate::header(&case, simulation.mechanism(), utc(SystemTime::now()));
     let writer = Writer::create(&output, header, arguments.force).map_err(Failure::output)?;
     let signals = Signals::new().map_err(Failure::output)?;
-    let told = simulate_into(writer, simulation, &signals, arguments.quiet)?;
+    let tangent = arguments.tangent.then_some(&case);
+    let told = simulate_into(writer, simulation, &signals, arguments.quiet, tangent)?;
     super::print(format_args!(
         "{}: {}, {} samples, {} contacts, {} steps in {:.2} s\n",
         told.path.display(),
@@ -50,6 +54,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         told.progress.steps,
         begun.elapsed().as_secs_f64()
     ));
+    if let Some(growth) = told.growth {
+        super::print(growth);
+    }
     Ok(())
 }
 
@@ -57,45 +64,108 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
 struct Told {
     path: PathBuf,
     progress: Progress,
+    /// What a tangent says, if one was asked for.
+    growth: Option<String>,
 }
 
-/// Runs a simulation into a writer, and finishes the file however the run ends.
+/// Runs a simulation into a writer, and finishes the file however the run ends. `tangent` is the
+/// case whose tangent is to be carried along.
 fn simulate_into(
-    mut writer: Writer,
+    writer: Writer,
     simulation: Simulation<'_>,
     signals: &Signals,
     quiet: bool,
+    tangent: Option<&Case>,
 ) -> Result<Told, Failure> {
-    let duration: f64 = simulation.schedule().duration();
+    let schedule = simulation.schedule().clone();
+    let revolution = simulation.mechanism().revolution();
+    let duration: f64 = schedule.duration();
+    let mut timed = Timed { writer, times: Vec::new(), kept: tangent.is_some() };
     let bar = progress_bar(quiet);
     let begun = Instant::now();
     let mut last = Progress::default();
     let mut watch = |progress: &Progress| {
         last = *progress;
         tell(&bar, progress, duration, begun);
-        match signals.received() {
-            Some(_) => ControlFlow::Break(()),
-            None => ControlFlow::Continue(()),
-        }
+        signals.flow()
     };
-    let (statistics, ran) = simulation.run(&mut writer, &mut watch);
+    let (statistics, ran) = simulation.run(&mut timed, &mut watch);
+    let Timed { writer, times, .. } = timed;
+    let mut series = Vec::new();
+    let mut growth = None;
+    let ran = ran.and_then(|()| {
+        let Some(case) = tangent else { return Ok(()) };
+        let mut flow = |_: &Progress| signals.flow();
+        let tangent = certify::tangent(case, &schedule.at(times), &mut flow)
+            .map_err(simulate::Error::forget_recorder)?;
+        growth = Some(growth_words(&tangent, revolution));
+        series = tangent.series();
+        Ok(())
+    });
     bar.finish_and_clear();
     let reason = ran.as_ref().err().map(chain);
-    let finished = writer.finish(ending(statistics, reason));
+    let finished = writer.finish(Ending { series, ..ending(statistics, reason) });
     let Err(error) = ran else {
         let path = finished.map_err(Failure::output)?;
-        return Ok(Told { path, progress: last });
+        return Ok(Told { path, progress: last, growth });
     };
     let rest = match finished {
         Ok(path) => format!("what was simulated until then is in {}", path.display()),
         Err(error) => format!("what was simulated until then is lost: {}", chain(&error)),
     };
-    let code = match (&error, signals.received()) {
-        (simulate::Error::Interrupted { .. }, Some(signal)) => 128 + signal,
+    let code = match (&error, signals.exit_code()) {
+        (simulate::Error::Interrupted { .. }, Some(code)) => code,
         (simulate::Error::Recorder(_), _) => 3,
         _ => 4,
     };
     Err(Failure { code, error: Box::new(error), rest: Some(rest) })
+}
+
+/// A writer, and the times of the samples that went to it where they are kept.
+struct Timed {
+    writer: Writer,
+    times: Vec<f64>,
+    kept: bool,
+}
+
+impl Recorder for Timed {
+    type Error = record::Error;
+
+    fn sample(&mut self, observation: &Observation) -> Result<(), record::Error> {
+        if self.kept {
+            self.times.push(observation.time);
+        }
+        self.writer.sample(observation)
+    }
+
+    fn event(&mut self, event: Event) -> Result<(), record::Error> {
+        self.writer.event(event)
+    }
+
+    fn contact(&mut self, contact: Contact) -> Result<(), record::Error> {
+        self.writer.contact(contact)
+    }
+
+    fn peak(&mut self, peak: Peak) -> Result<(), record::Error> {
+        self.writer.peak(peak)
+    }
+}
+
+/// The growth of errors, per revolution or per second.
+fn growth_words(tangent: &Tangent, revolution: Option<f64>) -> String {
+    let left = tangent.digits_left().last().copied().unwrap_or(f64::NAN);
+    let period = revolution.unwrap_or(1.0);
+    let per = if revolution.is_some() { "revolution" } else { "second" };
+    let Some(exponent) = tangent.exponent_per(period) else {
+        return "  errors do not grow\n".to_owned();
+    };
+    let each: Vec<String> =
+        tangent.exponents(period).iter().map(|exponent| format!("{exponent:.2}")).collect();
+    format!(
+        "  errors grow by a factor e^{exponent:.2} per {per} ({}); doubles have {left:.1} digits \
+         left at the end\n",
+        each.join(", ")
+    )
 }
 
 fn ending(statistics: Statistics, failure: Option<String>) -> Ending {
@@ -104,7 +174,7 @@ fn ending(statistics: Statistics, failure: Option<String>) -> Ending {
         Some(reason) => Outcome::Failed { reason },
     };
     let Statistics { engine: counts, rulings } = statistics;
-    Ending { outcome, counts, rulings, finished_utc: utc(SystemTime::now()) }
+    Ending { outcome, counts, rulings, finished_utc: utc(SystemTime::now()), series: Vec::new() }
 }
 
 fn progress_bar(quiet: bool) -> ProgressBar {
@@ -128,28 +198,4 @@ fn tell(bar: &ProgressBar, progress: &Progress, duration: f64, begun: Instant) {
         progress.events,
         progress.step
     ));
-}
-
-/// Signals that ask a run to stop; a second one ends the program at once.
-struct Signals {
-    received: Arc<AtomicUsize>,
-}
-
-impl Signals {
-    fn new() -> std::io::Result<Self> {
-        let received = Arc::new(AtomicUsize::new(0));
-        let again = Arc::new(AtomicBool::new(false));
-        for signal in [SIGINT, SIGTERM] {
-            let code = 128 + signal;
-            signal_hook::flag::register_conditional_shutdown(signal, code, Arc::clone(&again))?;
-            signal_hook::flag::register(signal, Arc::clone(&again))?;
-            signal_hook::flag::register_usize(signal, Arc::clone(&received), signal as usize)?;
-        }
-        Ok(Signals { received })
-    }
-
-    /// The signal that came, if one did.
-    fn received(&self) -> Option<u8> {
-        u8::try_from(self.received.load(Ordering::Relaxed)).ok().filter(|signal| *signal != 0)
-    }
 }

@@ -58,18 +58,25 @@ enum Exponent<S> {
 pub struct NormalLaw<S> {
     stiffness: S,
     exponent: Exponent<S>,
+    /// (q, n q), where n is a multiple of 1/q.
+    fraction: Option<(u32, u32)>,
     damping_weight: S,
 }
 
 impl<S: Scalar> NormalLaw<S> {
     /// A law with stiffness K (N/mⁿ), exponent n and damping weight a.
     pub fn new(stiffness: S, exponent: S, damping_weight: S) -> Self {
+        let n = exponent.to_f64();
+        let multiple = |q: u32| (n * f64::from(q)).round();
+        let fraction = (1..=6)
+            .find(|q| (n * f64::from(*q) - multiple(*q)).abs() < 1e-12)
+            .map(|q| (q, multiple(q) as u32));
         let exponent = if exponent == S::ratio(3, 2) {
             Exponent::ThreeHalves
         } else {
             Exponent::Other(exponent)
         };
-        NormalLaw { stiffness, exponent, damping_weight }
+        NormalLaw { stiffness, exponent, fraction, damping_weight }
     }
 
     /// Stiffness K (N/mⁿ).
@@ -122,6 +129,40 @@ impl<S: Scalar> NormalLaw<S> {
         }
     }
 
+    /// The depth δ = r^q of a root r.
+    #[inline(always)]
+    pub fn depth_from_root(&self, root: S) -> S {
+        let q = self.fraction.map_or(1, |(q, _)| q);
+        (1..q).fold(root, |product, _| product * root)
+    }
+
+    /// The force at a penetration of depth δ = r^q, of which the root r is known with its sign; q
+    /// is that of [`smooth_power`](Self::smooth_power). It is a polynomial in r and the rate, with
+    /// no case for r < 0: an engine may look a little beyond a contact's end.
+    #[inline(always)]
+    pub fn force_from_root(&self, p: Penetration<S>, root: S) -> NormalForce<S> {
+        let Some((q, whole)) = self.fraction else { return self.force(p) };
+        let power = |k: u32| (0..k).fold(S::one(), |product, _| product * root);
+        let (elastic, slope) = match (q, whole) {
+            (2, 3) => {
+                let slope = self.stiffness * root;
+                (slope * (root * root), S::from_f64(1.5) * slope)
+            }
+            _ if whole >= q => {
+                let slope = self.stiffness * power(whole - q);
+                (slope * power(q), self.exponent() * slope)
+            }
+            _ => return self.force(p),
+        };
+        let factor = self.factor(p);
+        NormalForce {
+            value: elastic * factor,
+            elastic,
+            d_depth: slope * factor,
+            d_rate: elastic * self.damping_weight * p.inverse_impact_rate,
+        }
+    }
+
     /// 1 + a δ̇/δ̇⁽⁻⁾: where it is negative the law pulls.
     #[inline(always)]
     pub fn factor(&self, p: Penetration<S>) -> S {
@@ -139,10 +180,7 @@ impl<S: Scalar> NormalLaw<S> {
     /// The power in which a trajectory is smooth beside δ = 0: solutions are analytic in δ^(1/q)
     /// where n is a multiple of 1/q. Exponents with a large q count as smooth, at a loss of order.
     pub fn smooth_power(&self) -> f64 {
-        let n = self.exponent().to_f64();
-        (1..=6)
-            .find(|q| (n * f64::from(*q) - (n * f64::from(*q)).round()).abs() < 1e-12)
-            .map_or(1.0, |q| 1.0 / f64::from(q))
+        self.fraction.map_or(1.0, |(q, _)| 1.0 / f64::from(q))
     }
 }
 
@@ -189,6 +227,33 @@ mod tests {
     fn without_depth_there_is_no_force() {
         let p = Penetration { depth: -1e-9, rate: 3.0, inverse_impact_rate: 1.0 };
         assert_eq!(law::<f64>(1.5).force(p), NormalForce::none());
+    }
+
+    #[test]
+    fn the_force_from_a_root_is_that_of_its_depth_and_goes_on_below_zero() {
+        for n in [1.0, 4.0 / 3.0, 1.5, 2.0] {
+            let law = law::<f64>(n);
+            let q = (1.0 / law.smooth_power()).round();
+            let at = |root: f64| {
+                let p = Penetration { depth: root.powf(q), rate: -0.3, inverse_impact_rate: 2.0 };
+                (law.force(p), law.force_from_root(p, root))
+            };
+            let (depth, root) = at(2e-2);
+            for (x, y) in [
+                (depth.value, root.value),
+                (depth.elastic, root.elastic),
+                (depth.d_depth, root.d_depth),
+                (depth.d_rate, root.d_rate),
+            ] {
+                assert!((x - y).abs() < 1e-13 * x.abs(), "n = {n}: {x} {y}");
+            }
+            let mirrored = law.force_from_root(
+                Penetration { depth: 0.0, rate: -0.3, inverse_impact_rate: 2.0 },
+                -2e-2,
+            );
+            let sign = if (n * q).round() % 2.0 == 0.0 { 1.0 } else { -1.0 };
+            assert_eq!(mirrored.value, sign * root.value, "n = {n}");
+        }
     }
 
     #[test]

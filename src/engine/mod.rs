@@ -1,5 +1,6 @@
 //! Engines: what carries a system from one event to the next.
 
+pub mod explicit;
 pub mod ida;
 
 #[cfg(test)]

@@ -55,6 +55,16 @@ impl<S: Scalar> Constraint<S> {
         }
     }
 
+    /// A_i s_i and A_j s_j: from the mass centres to the points (m), fixed frame; what the
+    /// functions below want of the poses.
+    #[inline(always)]
+    pub fn arms(&self, poses: &[Pose<S>]) -> [Vector<S>; 2] {
+        match self {
+            Constraint::Revolute(joint) => joint.arms(poses),
+            Constraint::Drive(_) => [Vector::zero(); 2],
+        }
+    }
+
     /// Φ (m, rad) of each row.
     pub fn position_error(&self, time: S, poses: &[Pose<S>], error: &mut [S]) {
         match self {
@@ -82,14 +92,14 @@ impl<S: Scalar> Constraint<S> {
     #[inline(always)]
     pub fn acceleration_error(
         &self,
-        poses: &[Pose<S>],
+        arms: &[Vector<S>; 2],
         motions: &[Motion<S>],
         accelerations: &[Motion<S>],
         error: &mut [S],
     ) {
         match self {
             Constraint::Revolute(joint) => {
-                let a = joint.acceleration_error(poses, motions, accelerations);
+                let a = joint.acceleration_error(arms, motions, accelerations);
                 (error[0], error[1]) = (a.x, a.y);
             }
             Constraint::Drive(drive) => error[0] = drive.acceleration_error(accelerations),
@@ -98,18 +108,18 @@ impl<S: Scalar> Constraint<S> {
 
     /// Φ_q of one row: its blocks for bodies `i` and `j`.
     #[inline(always)]
-    pub fn jacobian(&self, row: usize, poses: &[Pose<S>]) -> [Block<S>; 2] {
+    pub fn jacobian(&self, row: usize, arms: &[Vector<S>; 2]) -> [Block<S>; 2] {
         match self {
-            Constraint::Revolute(joint) => joint.jacobian(row, poses),
+            Constraint::Revolute(_) => Revolute::jacobian(row, arms),
             Constraint::Drive(drive) => drive.jacobian(),
         }
     }
 
     /// −Φ_qᵀ λ: what the multipliers put on bodies `i` and `j`.
     #[inline(always)]
-    pub fn wrenches(&self, poses: &[Pose<S>], lambda: &[S]) -> [Wrench<S>; 2] {
+    pub fn wrenches(&self, arms: &[Vector<S>; 2], lambda: &[S]) -> [Wrench<S>; 2] {
         match self {
-            Constraint::Revolute(joint) => joint.wrenches(poses, Vector::new(lambda[0], lambda[1])),
+            Constraint::Revolute(_) => Revolute::wrenches(arms, Vector::new(lambda[0], lambda[1])),
             Constraint::Drive(drive) => drive.wrenches(lambda[0]),
         }
     }

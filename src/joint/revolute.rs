@@ -21,7 +21,7 @@ pub struct Revolute<S> {
 impl<S: Scalar> Revolute<S> {
     /// A_i s_i and A_j s_j: from the mass centres to the points (m), fixed frame.
     #[inline(always)]
-    fn arms(&self, poses: &[Pose<S>]) -> [Vector<S>; 2] {
+    pub fn arms(&self, poses: &[Pose<S>]) -> [Vector<S>; 2] {
         [poses[self.pair.i].rotate(self.pair.s_i), poses[self.pair.j].rotate(self.pair.s_j)]
     }
 
@@ -41,11 +41,11 @@ impl<S: Scalar> Revolute<S> {
     #[inline(always)]
     pub fn acceleration_error(
         &self,
-        poses: &[Pose<S>],
+        arms: &[Vector<S>; 2],
         motions: &[Motion<S>],
         accelerations: &[Motion<S>],
     ) -> Vector<S> {
-        let [arm_i, arm_j] = self.arms(poses);
+        let [arm_i, arm_j] = *arms;
         let of = |body: usize, arm: Vector<S>| {
             let rate = motions[body].angular;
             accelerations[body].at(arm) - arm * (rate * rate)
@@ -55,8 +55,8 @@ impl<S: Scalar> Revolute<S> {
 
     /// Φ_q of one row.
     #[inline(always)]
-    pub fn jacobian(&self, row: usize, poses: &[Pose<S>]) -> [Block<S>; 2] {
-        let [arm_i, arm_j] = self.arms(poses);
+    pub fn jacobian(row: usize, arms: &[Vector<S>; 2]) -> [Block<S>; 2] {
+        let [arm_i, arm_j] = *arms;
         let (one, zero) = (S::one(), S::zero());
         match row {
             0 => [[-one, zero, arm_i.y], [one, zero, -arm_j.y]],
@@ -66,8 +66,8 @@ impl<S: Scalar> Revolute<S> {
 
     /// −Φ_qᵀ λ on bodies `i` and `j`.
     #[inline(always)]
-    pub fn wrenches(&self, poses: &[Pose<S>], lambda: Vector<S>) -> [Wrench<S>; 2] {
-        let [arm_i, arm_j] = self.arms(poses);
+    pub fn wrenches(arms: &[Vector<S>; 2], lambda: Vector<S>) -> [Wrench<S>; 2] {
+        let [arm_i, arm_j] = *arms;
         [Wrench::at(arm_i, lambda), Wrench::at(arm_j, -lambda)]
     }
 

@@ -1,6 +1,6 @@
 //! Forces on the bodies, accelerations and multipliers, and what the drives must do.
 
-use super::layout::Role;
+use super::layout::{Coupling, Role};
 use super::{Mechanism, Touch};
 use crate::clearance::Mode;
 use crate::linear::{self, Singular};
@@ -8,9 +8,10 @@ use crate::plane::{Motion, Vector, Wrench};
 use crate::scalar::Scalar;
 
 impl<S: Scalar> Mechanism<S> {
-    /// Loads and contact forces on every body, as placed.
+    /// Loads and contact forces on every body, as placed. `roots` are those that an engine
+    /// carries, by event function.
     #[inline(always)]
-    pub(super) fn apply_loads(&mut self) {
+    pub(super) fn apply_loads(&mut self, roots: &[Option<S>]) {
         let now = &mut self.now;
         now.wrenches.fill(Wrench::none());
         for load in self.model.loads() {
@@ -21,9 +22,14 @@ impl<S: Scalar> Mechanism<S> {
                 now.touches[k] = None;
                 continue;
             };
-            let gap = clearance.gap(&now.poses, &now.motions);
+            let mut gap = clearance.gap(&now.poses, &now.motions);
             let rates = clearance.rates(&gap, &now.motions);
-            let force = clearance.force(contact, &gap, &rates);
+            let root = roots.get(self.depth_slots[k]).copied().flatten();
+            let root = root.map(|sigma| sigma * self.radial_roots[k]);
+            if let Some(root) = root {
+                gap.depth = clearance.normal.depth_from_root(root);
+            }
+            let force = clearance.force(contact, &gap, &rates, root);
             let [bearing, journal] = clearance.wrenches(&gap, &force);
             now.wrenches[clearance.pair.i] += bearing;
             now.wrenches[clearance.pair.j] += journal;
@@ -49,14 +55,12 @@ impl<S: Scalar> Mechanism<S> {
     pub(super) fn solve(&mut self) -> Result<(), Singular> {
         self.accelerate();
         if self.layout.rows > 0 {
-            let now = &mut self.now;
-            for row in &self.layout.constraints {
-                let range = row.first..row.first + row.constraint.rows();
-                let error = &mut now.lambda[range];
-                let (poses, motions) = (&now.poses, &now.motions);
-                row.constraint.acceleration_error(poses, motions, &now.accelerations, error);
-            }
             self.factor()?;
+            let now = &mut self.now;
+            for (row, arms) in self.layout.constraints.iter().zip(&now.arms) {
+                let error = &mut now.lambda[row.first..row.first + row.constraint.rows()];
+                row.constraint.acceleration_error(arms, &now.motions, &now.accelerations, error);
+            }
             linear::solve_symmetric(&self.now.matrix, self.layout.rows, &mut self.now.lambda);
             self.apply_multipliers();
             self.accelerate();
@@ -69,13 +73,22 @@ impl<S: Scalar> Mechanism<S> {
         Ok(())
     }
 
+    /// Finds the arms of the joints, as placed.
+    #[inline(always)]
+    pub(super) fn reach(&mut self) {
+        let now = &mut self.now;
+        for (row, arms) in self.layout.constraints.iter().zip(&mut now.arms) {
+            *arms = row.constraint.arms(&now.poses);
+        }
+    }
+
     /// Adds what the joints put on the bodies.
     #[inline(always)]
     pub(super) fn apply_multipliers(&mut self) {
         let now = &mut self.now;
-        for row in &self.layout.constraints {
+        for (row, arms) in self.layout.constraints.iter().zip(&now.arms) {
             let lambda = &now.lambda[row.first..row.first + row.constraint.rows()];
-            let on = row.constraint.wrenches(&now.poses, lambda);
+            let on = row.constraint.wrenches(arms, lambda);
             for (body, wrench) in row.constraint.bodies().into_iter().zip(on) {
                 now.wrenches[body] += wrench;
             }
@@ -84,51 +97,30 @@ impl<S: Scalar> Mechanism<S> {
 
     /// Forms and factors Φ_q M⁻¹ Φ_qᵀ at the poses as placed.
     pub(super) fn factor(&mut self) -> Result<(), Singular> {
-        let m = self.layout.rows;
-        let constraints = &self.layout.constraints;
-        for (a, first) in constraints.iter().enumerate() {
-            for second in &constraints[..=a] {
-                for r in 0..first.constraint.rows() {
-                    for s in 0..second.constraint.rows() {
-                        let (row, column) = (first.first + r, second.first + s);
-                        let entry = self.coupling(first, r, second, s);
-                        self.now.matrix[row * m + column] = entry;
-                        self.now.matrix[column * m + row] = entry;
-                    }
-                }
+        self.reach();
+        let (m, now) = (self.layout.rows, &mut self.now);
+        for (row, arms) in self.layout.constraints.iter().zip(&now.arms) {
+            for r in 0..row.constraint.rows() {
+                now.jacobian[row.first + r] = row.constraint.jacobian(r, arms);
             }
         }
-        linear::factor_symmetric(&mut self.now.matrix, m)
-    }
-
-    /// One entry of Φ_q M⁻¹ Φ_qᵀ.
-    fn coupling(
-        &self,
-        first: &super::layout::Row<S>,
-        r: usize,
-        second: &super::layout::Row<S>,
-        s: usize,
-    ) -> S {
-        let mut sum = S::zero();
-        let mut blocks = None;
-        for (side_a, body) in first.constraint.bodies().into_iter().enumerate() {
-            let Role::Free(at) = self.layout.roles[body] else { continue };
-            for (side_b, other) in second.constraint.bodies().into_iter().enumerate() {
-                if other != body {
-                    continue;
-                }
-                let (of_first, of_second) = *blocks.get_or_insert_with(|| {
-                    (
-                        first.constraint.jacobian(r, &self.now.poses),
-                        second.constraint.jacobian(s, &self.now.poses),
-                    )
-                });
-                for c in 0..3 {
-                    sum += of_first[side_a][c] * of_second[side_b][c] * self.inverse_masses[at + c];
+        now.matrix.fill(S::zero());
+        for coupling in &self.layout.couplings {
+            let Coupling { row, column, sides, at } = *coupling;
+            let (a, b) = (&now.jacobian[row][sides[0]], &now.jacobian[column][sides[1]]);
+            let inverse = &self.inverse_masses[at..at + 3];
+            let mut sum = now.matrix[row * m + column];
+            for c in 0..2 {
+                // constants, most of them zero, and a product of 71 digits is dear
+                if a[c] != S::zero() && b[c] != S::zero() {
+                    sum += a[c] * b[c] * inverse[c];
                 }
             }
+            sum += a[2] * b[2] * inverse[2];
+            now.matrix[row * m + column] = sum;
+            now.matrix[column * m + row] = sum;
         }
-        sum
+        linear::factor_symmetric(&mut now.matrix, m)
     }
 
     /// Force and torque that make each driven body move as prescribed, by Newton and Euler from

@@ -20,7 +20,7 @@ impl<S: Scalar> Mechanism<S> {
     pub fn index_one_residual(&mut self, t: S, y: &[S], yp: &[S], r: &mut [S]) {
         let n = self.layout.coordinates;
         self.stand(t, y, yp);
-        self.apply_loads();
+        self.apply_loads(&[]);
         self.apply_multipliers();
         for k in 0..n {
             r[k] = yp[k] - y[n + k];
@@ -34,10 +34,10 @@ impl<S: Scalar> Mechanism<S> {
             r[row + 2] = rate[2] - by[2] * wrench.moment;
         }
         let now = &self.now;
-        for row in &self.layout.constraints {
+        for (row, arms) in self.layout.constraints.iter().zip(&now.arms) {
             let at = 2 * n + row.first;
             let error = &mut r[at..at + row.constraint.rows()];
-            row.constraint.acceleration_error(&now.poses, &now.motions, &now.accelerations, error);
+            row.constraint.acceleration_error(arms, &now.motions, &now.accelerations, error);
         }
     }
 
@@ -45,6 +45,7 @@ impl<S: Scalar> Mechanism<S> {
     fn stand(&mut self, t: S, y: &[S], yp: &[S]) {
         let n = self.layout.coordinates;
         self.place(&State { time: t, q: &y[..n], v: &y[n..2 * n], turns: None });
+        self.reach();
         self.now.lambda.copy_from_slice(&y[2 * n..]);
         for (body, role) in self.layout.roles.iter().enumerate() {
             let Role::Free(at) = *role else { continue };
@@ -82,7 +83,7 @@ impl Dae for Mechanism<f64> {
     ) -> Result<(), Fault> {
         let n = self.layout.coordinates;
         self.stand(t, y, yp);
-        self.apply_loads();
+        self.apply_loads(&[]);
         for k in 0..n {
             j[(k, k)] = cj;
             j[(k, n + k)] = -1.0;
@@ -140,7 +141,7 @@ impl Mechanism<f64> {
     fn constraint_entries(&self, cj: f64, j: &mut DMatrixViewMut<'_, f64>) {
         let n = self.layout.coordinates;
         let now = &self.now;
-        for row in &self.layout.constraints {
+        for (row, arms) in self.layout.constraints.iter().zip(&now.arms) {
             let constraint = &row.constraint;
             let bodies = constraint.bodies().map(|body| self.place_in_q(body));
             let lambda = &now.lambda[row.first..row.first + constraint.rows()];
@@ -151,7 +152,7 @@ impl Mechanism<f64> {
             }
             for r in 0..constraint.rows() {
                 let equation = 2 * n + row.first + r;
-                let blocks = constraint.jacobian(r, &now.poses);
+                let blocks = constraint.jacobian(r, arms);
                 let bias =
                     constraint.d_acceleration(r, &now.poses, &now.motions, &now.accelerations);
                 for (side, at) in bodies.into_iter().enumerate() {

@@ -46,6 +46,18 @@ pub(super) struct Row<S> {
     pub origin: Origin,
 }
 
+/// A body with unknowns that two constraint rows share: it couples their multipliers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Coupling {
+    pub row: usize,
+    /// At most `row`.
+    pub column: usize,
+    /// Whether the body is the first (0) or the second (1) of each row's constraint.
+    pub sides: [usize; 2],
+    /// Its place in v.
+    pub at: usize,
+}
+
 /// The unknowns and equations of a model.
 #[derive(Debug, Clone)]
 pub(super) struct Layout<S> {
@@ -54,6 +66,7 @@ pub(super) struct Layout<S> {
     /// Each after its base.
     pub driven: Vec<DrivenBody>,
     pub constraints: Vec<Row<S>>,
+    pub couplings: Vec<Coupling>,
     /// Number n of coordinates.
     pub coordinates: usize,
     /// Number m of constraint rows.
@@ -100,7 +113,10 @@ impl<S: Scalar> Layout<S> {
             });
         }
         match complaints.is_empty() {
-            true => Ok(Layout { roles, driven, constraints, coordinates, rows }),
+            true => {
+                let couplings = couplings(&constraints, &roles);
+                Ok(Layout { roles, driven, constraints, couplings, coordinates, rows })
+            }
             false => Err(complaints),
         }
     }
@@ -110,6 +126,24 @@ impl<S: Scalar> Layout<S> {
         let owner = self.constraints.iter().rev().find(|constraint| constraint.first <= row);
         owner.map_or(KeyPath::new(["joints"]), |owner| key(model, owner.origin))
     }
+}
+
+/// Which rows share which bodies, lower triangle.
+fn couplings<S: Scalar>(constraints: &[Row<S>], roles: &[Role]) -> Vec<Coupling> {
+    let sides = |constraint: &Row<S>| -> Vec<(usize, usize, usize)> {
+        let bodies = constraint.constraint.bodies().into_iter().enumerate();
+        let rows = constraint.first..constraint.first + constraint.constraint.rows();
+        bodies.flat_map(|(side, body)| rows.clone().map(move |row| (row, side, body))).collect()
+    };
+    let all: Vec<(usize, usize, usize)> = constraints.iter().flat_map(sides).collect();
+    let mut found = Vec::new();
+    for &(row, side, body) in &all {
+        let Role::Free(at) = roles[body] else { continue };
+        for &(column, other, _) in all.iter().filter(|(c, _, b)| *c <= row && *b == body) {
+            found.push(Coupling { row, column, sides: [side, other], at });
+        }
+    }
+    found
 }
 
 /// The key of a joint or a drive.

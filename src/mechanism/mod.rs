@@ -12,10 +12,12 @@ mod start;
 mod system;
 
 pub use observation::*;
+pub use project::OpenJoint;
 pub use system::{ContactRates, SingularPosition};
 
-use crate::clearance::{ContactForce, EventSlot, Gap, GapRates, Mode};
+use crate::clearance::{Clearance, ContactForce, EventSlot, Gap, GapRates, Mode};
 use crate::dae::{Snapshot, Watch};
+use crate::joint::Block;
 use crate::model::{Complaint, Model};
 use crate::plane::{Motion, Pose, Vector, Wrench};
 use crate::scalar::Scalar;
@@ -30,6 +32,10 @@ pub struct Mechanism<S> {
     inverse_masses: Vec<S>,
     modes: Vec<Mode<S>>,
     slots: Vec<(usize, EventSlot)>,
+    /// Event function of the depth, by clearance.
+    depth_slots: Vec<usize>,
+    /// c^power, by clearance: δ^power over the root of the event function δ/c.
+    radial_roots: Vec<S>,
     watches: Vec<Watch>,
     start: Snapshot<S>,
     start_energy: S,
@@ -62,6 +68,10 @@ struct Evaluation<S> {
     v_dot: Vec<S>,
     lambda: Vec<S>,
     powers: Vec<S>,
+    /// Arms of each constraint's points.
+    arms: Vec<[Vector<S>; 2]>,
+    /// Φ_q by row: its blocks for both bodies of the constraint.
+    jacobian: Vec<[Block<S>; 2]>,
     /// Φ_q M⁻¹ Φ_qᵀ, later its factors.
     matrix: Vec<S>,
     /// Force and torque of each driven body's joint and drive on that body.
@@ -82,6 +92,8 @@ impl<S: Scalar> Evaluation<S> {
             v_dot: vec![S::zero(); layout.coordinates],
             lambda: vec![S::zero(); layout.rows],
             powers: vec![S::zero(); 1 + clearances],
+            arms: vec![[Vector::zero(); 2]; layout.constraints.len()],
+            jacobian: vec![[[S::zero(); 3]; 2]; layout.rows],
             matrix: vec![S::zero(); layout.rows * layout.rows],
             driving: vec![(Vector::zero(), S::zero()); layout.driven.len()],
         }
@@ -103,12 +115,15 @@ impl<S: Scalar> Mechanism<S> {
                 inverse_masses.extend([inverse, inverse, S::one() / inertia]);
             }
         }
-        let slots = (model.clearances().iter().enumerate())
+        let slots: Vec<(usize, EventSlot)> = (model.clearances().iter().enumerate())
             .flat_map(|(k, clearance)| {
                 clearance.event_slots().into_iter().map(move |slot| (k, slot))
             })
             .collect();
+        let depth_slots = (0..slots.len()).filter(|slot| slots[*slot].1 == EventSlot::Depth);
         let mut mechanism = Mechanism {
+            depth_slots: depth_slots.collect(),
+            radial_roots: model.clearances().iter().map(radial_root).collect(),
             now: Evaluation::new(&model, &layout),
             start: Snapshot::new(layout.coordinates, 1 + model.clearances().len()),
             start_energy: S::zero(),
@@ -158,6 +173,12 @@ impl<S: Scalar> Mechanism<S> {
         self.length
     }
 
+    /// Time (s) of a revolution of the first drive; `None` without one that turns.
+    pub fn revolution(&self) -> Option<f64> {
+        let rate = self.model.drives().first()?.law.rate().to_f64().abs();
+        (rate > 0.0).then(|| std::f64::consts::TAU / rate)
+    }
+
     /// The largest angular rate of any body at the state last evaluated (rad/s).
     pub fn fastest_turn(&self) -> f64 {
         self.now.motions.iter().map(|m| m.angular.abs().to_f64()).fold(0.0, f64::max)
@@ -191,5 +212,14 @@ impl<S: Scalar> Mechanism<S> {
         let mode =
             clearance.switched(&self.modes[k], what, || clearance.rates(&gap, &self.now.motions));
         self.set_mode(k, mode);
+    }
+}
+
+/// c^power, with the power in which the contact law is smooth.
+fn radial_root<S: Scalar>(clearance: &Clearance<S>) -> S {
+    match (1.0 / clearance.normal.smooth_power()).round() {
+        1.0 => clearance.radial,
+        2.0 => clearance.radial.sqrt(),
+        q => clearance.radial.powf(S::one() / S::from_f64(q)),
     }
 }

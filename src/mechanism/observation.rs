@@ -15,6 +15,10 @@ pub struct Observation {
     pub drive_torques: Vec<f64>,
     /// Energies and works.
     pub energy: EnergyObservation,
+    /// What x, y, angle and their rates of each body, then the offset of each clearance, are
+    /// beyond their doubles (see [`Scalar::beyond`](crate::scalar::Scalar::beyond)); empty in
+    /// double precision.
+    pub beyond: Vec<f64>,
 }
 
 /// Position, velocity and acceleration of a body's mass centre and angle.

@@ -22,7 +22,26 @@ impl<S: Scalar> Mechanism<S> {
                 .map(|drive| self.drive_torque(drive).to_f64())
                 .collect(),
             energy: self.observe_energy(integrals),
+            beyond: self.beyond(),
         }
+    }
+
+    /// What the state is beyond its doubles, in an arithmetic that knows more.
+    fn beyond(&self) -> Vec<f64> {
+        let mut beyond = Vec::new();
+        if !S::GOES_BEYOND {
+            return beyond;
+        }
+        for (pose, motion) in self.now.poses.iter().zip(&self.now.motions).skip(1) {
+            let (at, going) = (pose.position, motion.linear);
+            let state = [at.x, at.y, pose.angle, going.x, going.y, motion.angular];
+            beyond.extend(state.map(S::beyond));
+        }
+        for clearance in self.model.clearances() {
+            let offset = clearance.gap(&self.now.poses, &self.now.motions).offset;
+            beyond.extend([offset.x, offset.y].map(S::beyond));
+        }
+        beyond
     }
 
     fn observe_body(&self, body: usize) -> BodyObservation {

@@ -13,7 +13,8 @@
 
 use super::Mechanism;
 use super::layout::{Origin, Row, key};
-use crate::dae::{State, System};
+use crate::clearance::Mode;
+use crate::dae::{Fault, State, System};
 use crate::joint::{Constraint, Revolute};
 use crate::linear;
 use crate::model::{Complaint, KeyPath, Start};
@@ -52,15 +53,31 @@ impl<S: Scalar> Mechanism<S> {
         self.assemble_positions(&mut q);
         self.check_positions(&q)?;
         let v = self.assemble_velocities(&q)?;
-        self.start.q.copy_from_slice(&q);
-        self.start.v.copy_from_slice(&v);
-        self.set_scales(&q, &v);
-        self.place(&State { time: S::zero(), q: &q, v: &v, turns: None });
+        self.begin(&q, &v)
+    }
+
+    /// Changes the start: every coordinate and velocity by a factor, and back onto the
+    /// constraints.
+    ///
+    /// # Errors
+    /// The mechanism cannot be evaluated there.
+    pub fn scale_start(&mut self, factor: S) -> Result<(), Vec<Complaint>> {
+        let (mut q, mut v) = (self.start.q.clone(), self.start.v.clone());
+        q.iter_mut().chain(&mut v).for_each(|x| *x *= factor);
+        self.project(S::zero(), &mut q, &mut v).map_err(start_fault)?;
+        self.modes.fill(Mode::Flight);
+        self.begin(&q, &v)
+    }
+
+    /// Takes a start: scales, first modes, energy.
+    fn begin(&mut self, q: &[S], v: &[S]) -> Result<(), Vec<Complaint>> {
+        self.start.q.copy_from_slice(q);
+        self.start.v.copy_from_slice(v);
+        self.set_scales(q, v);
+        let state = State { time: S::zero(), q, v, turns: None };
+        self.place(&state);
         self.choose_start_modes();
-        let state = State { time: S::zero(), q: &q, v: &v, turns: None };
-        self.evaluate(state).map_err(|fault| {
-            vec![Complaint { key: KeyPath::new(["joints"]), message: fault.to_string() }]
-        })?;
+        self.evaluate(state).map_err(start_fault)?;
         self.start_energy = self.stored_energy();
         Ok(())
     }
@@ -207,7 +224,7 @@ impl<S: Scalar> Mechanism<S> {
     /// One row of Φ_q over all coordinates.
     fn coefficients(&self, constraint: &Constraint<S>, row: usize) -> Vec<S> {
         let mut coefficients = vec![S::zero(); self.layout.coordinates];
-        let blocks = constraint.jacobian(row, &self.now.poses);
+        let blocks = constraint.jacobian(row, &constraint.arms(&self.now.poses));
         for (body, block) in constraint.bodies().into_iter().zip(blocks) {
             if let Some((_, at)) = self.free_bodies().find(|(free, _)| *free == body) {
                 for (c, entry) in block.into_iter().enumerate() {
@@ -385,6 +402,10 @@ impl<S: Scalar> Conditions<S> {
         right.truncate(n);
         right.iter().all(|x| x.is_finite()).then_some(right)
     }
+}
+
+fn start_fault(fault: Fault) -> Vec<Complaint> {
+    vec![Complaint { key: KeyPath::new(["joints"]), message: fault.to_string() }]
 }
 
 /// The largest distance (m) of a joint's point from its body's mass centre, or of two points of

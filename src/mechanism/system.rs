@@ -48,8 +48,16 @@ impl<S: Scalar> System<S> for Mechanism<S> {
     }
 
     fn evaluate(&mut self, state: State<'_, S>) -> Result<(), Fault> {
+        self.evaluate_with_roots(state, &[])
+    }
+
+    fn evaluate_with_roots(
+        &mut self,
+        state: State<'_, S>,
+        roots: &[Option<S>],
+    ) -> Result<(), Fault> {
         self.place(&state);
-        self.apply_loads();
+        self.apply_loads(roots);
         self.solve().map_err(|singular| self.singular(singular))?;
         self.drive();
         self.measure_powers();

@@ -1,6 +1,7 @@
 //! What a writer must know before a run, and what it is told at the end.
 
 use super::Attribute;
+use super::schema::{Dimension, Values};
 use crate::dae::Count;
 use std::time::{SystemTime, UNIX_EPOCH};
 
@@ -41,6 +42,26 @@ pub struct Ending {
     pub rulings: Vec<Count>,
     /// When the run ended: attribute `finished_utc`; [`utc`] writes it.
     pub finished_utc: String,
+    /// Datasets that are known only now.
+    pub series: Vec<Series>,
+}
+
+/// A dataset along a dimension that grows, known as a whole at the run's end: what a certificate
+/// says of each sample, for example.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Series {
+    /// Name.
+    pub name: &'static str,
+    /// Attribute `units`.
+    pub unit: &'static str,
+    /// Attribute `long_name`.
+    pub long_name: &'static str,
+    /// How the values are stored.
+    pub stored: Values,
+    /// The dimension.
+    pub along: Dimension,
+    /// A value for each place along it.
+    pub values: Vec<f64>,
 }
 
 /// Whether a run came to its end.

@@ -17,8 +17,9 @@ mod writer;
 
 pub use attribute::Attribute;
 pub use error::{Error, LibraryError};
-pub use header::{Ending, Header, Outcome, utc};
+pub use header::{Ending, Header, Outcome, Series, utc};
 pub use overview::Overview;
+pub(crate) use publish::Draft;
 pub use reader::{ResultFile, Table};
 pub use schema::{DATASETS, Dataset, Dimension, SCHEMA_VERSION, Source, Values, column_name};
 pub use writer::Writer;

@@ -1,7 +1,7 @@
 //! The HDF5 file as it is being written: made with all its datasets, then grown by blocks of rows.
 
 use super::dimension_scale::{attach_scale, set_scale};
-use super::header::{Ending, Header, Outcome};
+use super::header::{Ending, Header, Outcome, Series};
 use super::schema::{DATASETS, Dataset, Dimension, SCHEMA_VERSION, Values};
 use super::{Attribute, Error};
 use hdf5::file::{AttrCreationOrder, LibraryVersion, LinkCreationOrder};
@@ -102,7 +102,8 @@ impl Store {
             let handle = if dataset.name == Dimension::Time.name() {
                 self.scale(Dimension::Time).clone()
             } else {
-                let handle = create_dataset(&self.file, dataset, width)?;
+                let Dataset { name, unit, long_name, values, .. } = *dataset;
+                let handle = create_dataset(&self.file, name, unit, long_name, values, width)?;
                 attach_scale(&handle, self.scale(dataset.rows()), 0)?;
                 if let Some(items) = dataset.items() {
                     attach_scale(&handle, self.scale(items), 1)?;
@@ -131,14 +132,31 @@ impl Store {
         }
         let open = self.handles.iter().filter(|open| open.dataset.rows() == block.dimension);
         for (open, values) in open.zip(&block.columns) {
-            write_values(open, rows.clone(), values)
+            let width = open.dataset.items().map(|_| open.width);
+            write_values(&open.handle, open.dataset.values, width, rows.clone(), values)
                 .map_err(failed(format!("write {} to", open.dataset.name), &self.path))?;
         }
         Ok(())
     }
 
+    /// Makes a dataset of values that are known as a whole.
+    fn add(&self, series: &Series) -> hdf5::Result<()> {
+        let rows = self.rows[series.along as usize];
+        if series.values.len() != rows {
+            let (name, length) = (series.name, series.values.len());
+            return Err(format!("{name} has {length} values for {rows} rows").into());
+        }
+        let Series { name, unit, long_name, stored, .. } = *series;
+        let handle = create_dataset(&self.file, name, unit, long_name, stored, None)?;
+        attach_scale(&handle, self.scale(series.along), 0)?;
+        write_values(&handle, stored, None, 0..rows, &series.values)
+    }
+
     /// Writes how the run ended and closes the file.
     pub fn close(self, ending: &Ending) -> Result<(), Error> {
+        for series in &ending.series {
+            self.add(series).map_err(failed(format!("write {} to", series.name), &self.path))?;
+        }
         let Store { handles, scales, file, path, .. } = self;
         drop((handles, scales));
         write_ending(&file, ending).map_err(failed("write the ending of", &path))?;
@@ -228,17 +246,20 @@ fn create_growing<T: H5Type>(
 
 fn create_dataset(
     file: &File,
-    dataset: &Dataset,
+    name: &str,
+    unit: &str,
+    long_name: &str,
+    stored: Values,
     width: Option<usize>,
 ) -> hdf5::Result<hdf5::Dataset> {
-    let handle = match dataset.values {
-        Values::Real => create_growing::<f64>(file, dataset.name, width),
-        Values::Index => create_growing::<i32>(file, dataset.name, width),
-        Values::Flag(_) => create_growing::<i8>(file, dataset.name, width),
+    let handle = match stored {
+        Values::Real => create_growing::<f64>(file, name, width),
+        Values::Index => create_growing::<i32>(file, name, width),
+        Values::Flag(_) => create_growing::<i8>(file, name, width),
     }?;
-    Attribute::from(dataset.unit).write(&handle, "units")?;
-    Attribute::from(dataset.long_name).write(&handle, "long_name")?;
-    if let Values::Flag(meanings) = dataset.values {
+    Attribute::from(unit).write(&handle, "units")?;
+    Attribute::from(long_name).write(&handle, "long_name")?;
+    if let Values::Flag(meanings) = stored {
         let values: Vec<i8> = (0..meanings.len() as i8).collect();
         handle.new_attr::<i8>().shape(meanings.len()).create("flag_values")?.write(&values)?;
         Attribute::from(meanings.join(" ")).write(&handle, "flag_meanings")?;
@@ -246,18 +267,23 @@ fn create_dataset(
     Ok(handle)
 }
 
-/// Converts values to those stored and appends them.
-fn write_values(open: &Open, rows: Range<usize>, values: &[f64]) -> hdf5::Result<()> {
-    let width = open.dataset.items().map(|_| open.width);
-    match open.dataset.values {
-        Values::Real => append_rows(&open.handle, rows, width, values),
+/// Converts values to those stored and appends them; `width` as in [`create_growing`].
+fn write_values(
+    handle: &hdf5::Dataset,
+    stored: Values,
+    width: Option<usize>,
+    rows: Range<usize>,
+    values: &[f64],
+) -> hdf5::Result<()> {
+    match stored {
+        Values::Real => append_rows(handle, rows, width, values),
         Values::Index => {
             let values: Vec<i32> = values.iter().map(|&value| value as i32).collect();
-            append_rows(&open.handle, rows, width, &values)
+            append_rows(handle, rows, width, &values)
         }
         Values::Flag(_) => {
             let values: Vec<i8> = values.iter().map(|&value| value as i8).collect();
-            append_rows(&open.handle, rows, width, &values)
+            append_rows(handle, rows, width, &values)
         }
     }
 }

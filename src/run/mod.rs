@@ -10,11 +10,13 @@ mod recorder;
 mod sampling;
 mod schedule;
 mod touching;
+mod trajectory;
 mod window;
 
 pub use kinematic::{Assembled, kinematic};
 pub use recorder::*;
 pub use schedule::Schedule;
+pub use trajectory::Trajectory;
 
 use crate::clearance::{EventSlot, Mode};
 use crate::dae::{Advance, Engine, Fault, Snapshot, State, System};
@@ -184,7 +186,8 @@ where
                 }
                 Advance::Stepped => {}
             }
-            if self.progress.steps.is_multiple_of(PROGRESS_EVERY) {
+            // steps in many digits take long
+            if S::EPSILON < f64::EPSILON || self.progress.steps.is_multiple_of(PROGRESS_EVERY) {
                 self.tell(watch)?;
             }
         }

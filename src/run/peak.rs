@@ -8,6 +8,8 @@ use crate::scalar::Scalar;
 
 /// Looks at a step's inside that one root may take.
 const MOST_LOOKS: usize = 60;
+/// Accuracy of a look, beyond that of the doubles that are told.
+const GLANCE: f64 = 1e-18;
 
 impl<S, E, R> Run<'_, S, E, R>
 where
@@ -84,8 +86,8 @@ where
             if right - left <= close || below == S::zero() {
                 break;
             }
-            let time = left + (right - left) * (above / (above - below));
-            self.look(time, false)?;
+            let aim = left + (right - left) * (above / (above - below));
+            let time = self.glance(aim, left, right)?;
             let Some(rates) = self.engine.system().contact_rates(k) else { break };
             let value = of(&rates);
             let moved = (time - found.0).abs();
@@ -108,5 +110,17 @@ where
             }
         }
         Ok(found)
+    }
+
+    /// Has the system evaluated near a time, between two others (s); returns where.
+    fn glance(&mut self, aim: S, left: S, right: S) -> Outcome<S, S, E, R> {
+        let glanced = self.engine.glance(aim, GLANCE, &mut self.scratch);
+        glanced.map_err(|source| self.stopped(source))?;
+        if !(self.scratch.time > left && self.scratch.time < right) {
+            let landed = self.engine.within(aim, &mut self.scratch);
+            landed.map_err(|source| self.stopped(source))?;
+        }
+        self.evaluate()?;
+        Ok(self.scratch.time)
     }
 }

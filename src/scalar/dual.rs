@@ -112,6 +112,12 @@ impl<S: Scalar> PartialOrd for Dual<S> {
 
 impl<S: Scalar> Scalar for Dual<S> {
     const EPSILON: f64 = S::EPSILON;
+    const GOES_BEYOND: bool = true;
+    const CARRIES_DERIVATIVE: bool = true;
+
+    fn beyond(self) -> f64 {
+        self.eps.to_f64()
+    }
 
     fn from_f64(x: f64) -> Self {
         Dual::from_re(S::from_f64(x))

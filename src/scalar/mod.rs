@@ -39,6 +39,19 @@ pub trait Scalar:
     /// Distance from one to the next larger number of this kind.
     const EPSILON: f64;
 
+    /// Whether [`beyond`](Scalar::beyond) tells anything.
+    const GOES_BEYOND: bool = false;
+
+    /// Whether numbers carry a derivative, which an iteration that looks at values must not leave
+    /// behind.
+    const CARRIES_DERIVATIVE: bool = false;
+
+    /// What the number knows beyond its nearest double: in 71 digits the remainder, in dual
+    /// numbers the derivative.
+    fn beyond(self) -> f64 {
+        0.0
+    }
+
     /// The number `x`, exactly.
     fn from_f64(x: f64) -> Self;
 

@@ -45,6 +45,12 @@ fn scaled(x: F256, k: i32) -> F256 {
 impl Scalar for F256 {
     const EPSILON: f64 = 9.055_679_078_826_712e-72;
 
+    const GOES_BEYOND: bool = true;
+
+    fn beyond(self) -> f64 {
+        (self - F256::from(self.to_f64())).to_f64()
+    }
+
     fn from_f64(x: f64) -> F256 {
         F256::from(x)
     }

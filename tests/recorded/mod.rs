@@ -263,6 +263,7 @@ fn observation(row: usize, header: &Header, numbers: &mut Numbers) -> Observatio
             load_work: numbers.next(),
             residual: numbers.next(),
         },
+        beyond: Vec::new(),
     }
 }
 
@@ -297,5 +298,6 @@ pub fn complete() -> Ending {
         counts: vec![freeplay::dae::Count { name: "steps", value: 123_456 }],
         rulings: vec![freeplay::dae::Count { name: "tension", value: 7 }],
         finished_utc: "2026-03-01T12:00:01Z".to_owned(),
+        series: Vec::new(),
     }
 }

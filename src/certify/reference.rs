@@ -1,0 +1,302 @@
+//! Reference trajectories: two runs of the explicit engine in 71-digit arithmetic, side by side,
+//! at tolerances some decades apart.
+//!
+//! The looser run is wrong by about the difference of the two, the tighter one by some decades
+//! less: what both agree on, the tighter one certifies. The first pair is as loose as may do;
+//! where it parts too early, the rate at which it parted tells how tight the next must be.
+
+use super::digits::Scales;
+use crate::case::{self, Case};
+use crate::mechanism::{Mechanism, Observation};
+use crate::run::{Contact, Event, Peak, Progress, Recorder, Schedule, Trajectory};
+use crate::scalar::F256;
+use crate::simulate::{self, assemble};
+use std::convert::Infallible;
+use std::ops::ControlFlow;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Exponent of the tightest tolerance that 71 digits serve.
+const TIGHTEST: f64 = 63.0;
+/// Decades between the tolerances of a pair.
+const APART: f64 = 5.0;
+/// Decades that a pair is tighter than the growth of errors asks for.
+const TO_SPARE: f64 = 3.0;
+/// The first pair: exponent of its looser tolerance.
+const FIRST: f64 = 24.0;
+/// Relative change of the start that shows what no double-precision run can know.
+const DOUBLE_PRECISION: f64 = 1e-16;
+/// Exponent of the tolerance of the run with a changed start.
+const CHANGED: f64 = 24.0;
+
+/// Two runs of a case, and how far they agree.
+#[derive(Debug)]
+pub struct Pair {
+    /// The tighter run; the reference.
+    pub tight: Trajectory,
+    /// Scaled differences of the two at each sample of the tighter one that both have.
+    pub apart: Vec<super::digits::Parts<f64>>,
+    /// Tolerances of the tighter and of the looser run.
+    pub tolerances: [f64; 2],
+    /// Scales of the tighter run.
+    pub scales: Scales,
+}
+
+/// A word of progress of a reference run.
+#[derive(Debug, Clone, Copy)]
+pub struct Stage {
+    /// Tolerance of the run.
+    pub tolerance: f64,
+    /// Simulated time (s).
+    pub time: f64,
+}
+
+/// Who watches: is told of progress from several threads, and may stop everything.
+pub type Watch<'a> = &'a (dyn Fn(Stage) -> ControlFlow<()> + Sync);
+
+/// Why there is no reference.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    /// A reference run stopped.
+    #[error("the reference run at a tolerance of {tolerance:e} stopped")]
+    Stopped {
+        /// Its tolerance.
+        tolerance: f64,
+        /// Why.
+        source: simulate::Error<Infallible>,
+    },
+    /// The case cannot be assembled in 71 digits.
+    #[error(transparent)]
+    Case(#[from] case::Error),
+    /// Whoever watched asked to stop.
+    #[error("interrupted")]
+    Interrupted,
+}
+
+/// One of two runs that are compared while they go.
+struct Side<'a> {
+    kept: Trajectory,
+    both: &'a Mutex<[Vec<Observation>; 2]>,
+    which: usize,
+    /// Set once the two have parted.
+    parted: &'a AtomicBool,
+    least: f64,
+    clearances: &'a [f64],
+}
+
+impl Side<'_> {
+    /// Compares the newest sample that both have, with scales as they are so far.
+    fn compare(&self) {
+        let Ok(mut both) = self.both.lock() else { return };
+        both[self.which].extend(self.kept.samples.last().cloned());
+        let newest = both[0].len().min(both[1].len());
+        let Some(newest) = newest.checked_sub(1) else { return };
+        let scales = Scales::of(&both[0][newest..=newest], self.clearances.to_vec());
+        let difference = scales.differences(&both[0][newest], &both[1][newest]);
+        if !(difference.state < self.least) {
+            self.parted.store(true, Ordering::Relaxed);
+        }
+    }
+}
+
+impl Recorder for Side<'_> {
+    type Error = Infallible;
+
+    fn sample(&mut self, observation: &Observation) -> Result<(), Infallible> {
+        self.kept.sample(observation)?;
+        self.compare();
+        Ok(())
+    }
+
+    fn event(&mut self, event: Event) -> Result<(), Infallible> {
+        self.kept.event(event)
+    }
+
+    fn contact(&mut self, contact: Contact) -> Result<(), Infallible> {
+        self.kept.contact(contact)
+    }
+
+    fn peak(&mut self, peak: Peak) -> Result<(), Infallible> {
+        self.kept.peak(peak)
+    }
+}
+
+/// References that agree to `digits` (and a little more) to the end of the schedule, or as far as
+/// 71-digit arithmetic reaches.
+///
+/// # Errors
+/// See [`Error`].
+pub fn references(
+    case: &Case,
+    schedule: &Schedule,
+    digits: f64,
+    watch: Watch<'_>,
+) -> Result<Pair, Error> {
+    let least = 10f64.powf(-digits - 1.0);
+    let mut loose = FIRST.max(digits + 6.0);
+    loop {
+        let pair = pair(case, schedule, loose, least, watch)?;
+        let agreed = pair.agreed_until(least);
+        let whole = pair.tight.samples.len() as u64 >= schedule.len()
+            && pair.apart.len() == pair.tight.samples.len();
+        if (whole && agreed == pair.apart.len()) || loose + APART >= TIGHTEST {
+            return Ok(pair);
+        }
+        let lost = (loose - digits) / pair.tight.samples[agreed.saturating_sub(1)].time.max(1e-300);
+        let needed = digits + TO_SPARE + lost * schedule.duration::<f64>();
+        loose = needed.max(loose + 4.0).min(TIGHTEST - APART).ceil();
+    }
+}
+
+impl Pair {
+    /// Number of leading samples at which the two differ by less than `least`.
+    pub fn agreed_until(&self, least: f64) -> usize {
+        self.apart.iter().take_while(|apart| apart.state < least).count()
+    }
+}
+
+/// Runs a pair side by side until its end or until it has parted by `least`.
+fn pair(
+    case: &Case,
+    schedule: &Schedule,
+    loose: f64,
+    least: f64,
+    watch: Watch<'_>,
+) -> Result<Pair, Error> {
+    let tolerances = [loose + APART, loose].map(|exponent| 10f64.powf(-exponent));
+    let mechanism: Mechanism<F256> = assemble(case)?;
+    let clearances = clearances(&mechanism);
+    let both = Mutex::new([Vec::new(), Vec::new()]);
+    let parted = AtomicBool::new(false);
+    let side = |which: usize| {
+        let mut side = Side {
+            kept: Trajectory::default(),
+            both: &both,
+            which,
+            parted: &parted,
+            least,
+            clearances: &clearances,
+        };
+        let tolerance = tolerances[which];
+        let ran = run(case, mechanism.clone(), schedule, tolerance, &mut side, &parted, watch);
+        ran.map(|()| side.kept)
+    };
+    let (tight, loose) = std::thread::scope(|scope| {
+        let loose = scope.spawn(|| side(1));
+        let tight = side(0);
+        (tight, loose.join())
+    });
+    let loose = loose.unwrap_or_else(|panic| std::panic::resume_unwind(panic));
+    let (tight, loose) = (tight?, loose?);
+    let scales = Scales::of(&tight.samples, clearances);
+    let apart = (tight.samples.iter().zip(&loose.samples))
+        .map(|(tight, loose)| scales.differences(tight, loose))
+        .collect();
+    Ok(Pair { tight, apart, tolerances, scales })
+}
+
+/// One run; that the runs of a pair have parted is no error.
+fn run<R: Recorder<Error = Infallible>>(
+    case: &Case,
+    mechanism: Mechanism<F256>,
+    schedule: &Schedule,
+    tolerance: f64,
+    recorder: &mut R,
+    parted: &AtomicBool,
+    watch: Watch<'_>,
+) -> Result<(), Error> {
+    let mut interrupted = false;
+    let mut told = |progress: &Progress| {
+        interrupted = watch(Stage { tolerance, time: progress.time }).is_break();
+        match interrupted || parted.load(Ordering::Relaxed) {
+            true => ControlFlow::Break(()),
+            false => ControlFlow::Continue(()),
+        }
+    };
+    let (_, ran) =
+        simulate::run_reference(case, mechanism, schedule, tolerance, recorder, &mut told);
+    match ran {
+        Err(simulate::Error::Interrupted { .. }) if interrupted => Err(Error::Interrupted),
+        Ok(()) | Err(simulate::Error::Interrupted { .. }) => Ok(()),
+        Err(source) => Err(Error::Stopped { tolerance, source }),
+    }
+}
+
+/// How a relative change of the start by 1e-16 grows, in exact arithmetic.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Growth {
+    /// Scaled change at each sample, over the relative change of the start; ends where it has
+    /// grown to a tenth of the scale.
+    pub factors: Vec<f64>,
+    /// Time (s) at which it has: no double-precision run means anything beyond.
+    pub double_precision_ends: Option<f64>,
+}
+
+/// Runs the case from a start that is changed by 1e-16, against its reference.
+///
+/// # Errors
+/// See [`Error`].
+pub fn growth(
+    case: &Case,
+    schedule: &Schedule,
+    reference: &Pair,
+    watch: Watch<'_>,
+) -> Result<Growth, Error> {
+    let mut mechanism: Mechanism<F256> = assemble(case)?;
+    let factor = F256::ONE + F256::from(DOUBLE_PRECISION);
+    mechanism.scale_start(factor).map_err(|complaints| case.reject(complaints))?;
+    let parted = AtomicBool::new(false);
+    let mut against = Against { reference, growth: Growth::default(), parted: &parted };
+    let tolerance = 10f64.powf(-CHANGED);
+    run(case, mechanism, schedule, tolerance, &mut against, &parted, watch)?;
+    Ok(against.growth)
+}
+
+/// Compares a run with the reference until a tenth of the scale lies between them.
+struct Against<'a> {
+    reference: &'a Pair,
+    growth: Growth,
+    parted: &'a AtomicBool,
+}
+
+impl Recorder for Against<'_> {
+    type Error = Infallible;
+
+    fn sample(&mut self, observation: &Observation) -> Result<(), Infallible> {
+        let Pair { tight, scales, .. } = self.reference;
+        let there = tight.samples.get(self.growth.factors.len());
+        let apart = there.map(|there| scales.differences(observation, there).state);
+        match apart {
+            Some(apart) if apart < 0.1 => self.growth.factors.push(apart / DOUBLE_PRECISION),
+            Some(_) => {
+                self.growth.double_precision_ends.get_or_insert(observation.time);
+                self.parted.store(true, Ordering::Relaxed);
+            }
+            None => self.parted.store(true, Ordering::Relaxed),
+        }
+        Ok(())
+    }
+
+    fn event(&mut self, _: Event) -> Result<(), Infallible> {
+        Ok(())
+    }
+
+    fn contact(&mut self, _: Contact) -> Result<(), Infallible> {
+        Ok(())
+    }
+
+    fn peak(&mut self, _: Peak) -> Result<(), Infallible> {
+        Ok(())
+    }
+}
+
+/// Radial clearances (m).
+fn clearances(mechanism: &Mechanism<F256>) -> Vec<f64> {
+    let radial = |clearance: &crate::clearance::Clearance<F256>| clearance.radial;
+    mechanism
+        .model()
+        .clearances()
+        .iter()
+        .map(|c| crate::scalar::Scalar::to_f64(radial(c)))
+        .collect()
+}

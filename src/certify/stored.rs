@@ -1,0 +1,234 @@
+//! A certified reference in a result file.
+
+use super::{Certificate, Claim, Growth, Parts, Reference, Scales};
+use crate::case::{self, Case};
+use crate::mechanism::{BodyObservation, ClearanceObservation, JointObservation, Observation};
+use crate::record::{Attribute, Dimension, ResultFile, Series, Values};
+use crate::run::Trajectory;
+
+/// A file that does not serve as the reference of a case.
+#[derive(Debug, thiserror::Error)]
+pub enum NotAReference {
+    /// The file cannot be read.
+    #[error(transparent)]
+    Unreadable(#[from] crate::record::Error),
+    /// The file holds no certificate.
+    #[error("{file} holds no certified reference: it has no {what}; `freeplay certify` makes one")]
+    NoCertificate {
+        /// The file.
+        file: String,
+        /// What is missing.
+        what: &'static str,
+    },
+    /// The case in the file cannot be read.
+    #[error("the case in {file} cannot be read")]
+    Case {
+        /// The file.
+        file: String,
+        /// Why.
+        source: case::Error,
+    },
+    /// The reference is that of another mechanism.
+    #[error("the reference in {file} is that of another mechanism: {what} differs")]
+    OtherMechanism {
+        /// The file.
+        file: String,
+        /// What differs.
+        what: &'static str,
+    },
+}
+
+/// Name and `long_name` of a dataset, and its value for a sample.
+type Column = (&'static str, &'static str, fn(&Claim) -> f64);
+
+/// What the file says of a sample.
+const CLAIMS: [Column; 6] = [
+    ("reference_digits", "digits of the state to which this reference is certified", |c| {
+        c.reference.state
+    }),
+    ("reference_digits_forces", "digits of the joint forces to which it is certified", |c| {
+        c.reference.forces
+    }),
+    ("reference_digits_torque", "digits of the drive torques to which it is certified", |c| {
+        c.reference.torque
+    }),
+    ("run_digits", "true digits of the state of the run under test", |c| c.run.state),
+    ("run_digits_forces", "true digits of the joint forces of the run under test", |c| {
+        c.run.forces
+    }),
+    ("run_digits_torque", "true digits of the drive torques of the run under test", |c| {
+        c.run.torque
+    }),
+];
+
+impl Certificate {
+    /// The datasets that a certificate adds to a result file.
+    pub fn series(&self) -> Vec<Series> {
+        let claims = CLAIMS.into_iter().map(|(name, long_name, of)| Series {
+            name,
+            unit: "1",
+            long_name,
+            stored: Values::Real,
+            along: Dimension::Time,
+            values: self.claims.iter().map(of).collect(),
+        });
+        let late = self.events.iter().map(|event| event.late);
+        let in_run = Series {
+            name: "event_in_run",
+            unit: "1",
+            long_name: "whether the run under test has this event",
+            stored: Values::Flag(&["missing", "found"]),
+            along: Dimension::Event,
+            values: late.clone().map(|late| f64::from(u8::from(late.is_some()))).collect(),
+        };
+        let by = Series {
+            name: "event_time_error",
+            unit: "s",
+            long_name: "time of this event in the run under test less its true time",
+            stored: Values::Real,
+            along: Dimension::Event,
+            values: late.map(|late| late.unwrap_or(f64::NAN)).collect(),
+        };
+        let factors = &self.reference.growth.factors;
+        let growth = Series {
+            name: "error_growth",
+            unit: "1",
+            long_name: "scaled change of the state per relative change of the start, by 1e-16",
+            stored: Values::Real,
+            along: Dimension::Time,
+            values: (0..self.claims.len())
+                .map(|place| factors.get(place).copied().unwrap_or(f64::NAN))
+                .collect(),
+        };
+        claims.chain([in_run, by, growth]).collect()
+    }
+}
+
+impl Reference {
+    /// The attributes that a certificate adds to a result file.
+    pub fn attributes(&self) -> Vec<(String, Attribute)> {
+        let Scales { angle, angular_velocity, velocity, clearances, force, torque } = &self.scales;
+        let mut attributes = vec![
+            ("reference_tolerance_tight".to_owned(), self.tolerances[0]),
+            ("reference_tolerance_loose".to_owned(), self.tolerances[1]),
+            ("scale_angle".to_owned(), *angle),
+            ("scale_angular_velocity".to_owned(), *angular_velocity),
+            ("scale_velocity".to_owned(), *velocity),
+            ("scale_force".to_owned(), *force),
+            ("scale_torque".to_owned(), *torque),
+        ];
+        let clearances = clearances.iter().enumerate();
+        attributes.extend(clearances.map(|(k, c)| (format!("scale_clearance_{k}"), *c)));
+        let ends = self.growth.double_precision_ends;
+        attributes.extend(ends.map(|time| ("double_precision_ends".to_owned(), time)));
+        attributes.into_iter().map(|(name, value)| (name, Attribute::from(value))).collect()
+    }
+}
+
+/// Reads a reference back: it is as certain as its file says, and no finer than doubles.
+pub(super) fn read(case: &Case, file: &ResultFile) -> Result<Reference, NotAReference> {
+    let name = || file.path().display().to_string();
+    same_mechanism(case, file)?;
+    let need = |attribute: &'static str| {
+        let missing = NotAReference::NoCertificate { file: name(), what: attribute };
+        file.number(attribute).ok_or(missing)
+    };
+    let claim = |of: &'static str| {
+        let digits = file.over_time(of)?;
+        digits.ok_or_else(|| NotAReference::NoCertificate { file: name(), what: of })
+    };
+    let (state, forces, torque) = (
+        claim("reference_digits")?,
+        claim("reference_digits_forces")?,
+        claim("reference_digits_torque")?,
+    );
+    let growth = claim("error_growth")?;
+    let wrong = |digits: f64| 10f64.powf(-digits);
+    let wrong = (state.iter().zip(&forces).zip(&torque))
+        .map(|((s, f), t)| Parts { state: wrong(*s), forces: wrong(*f), torque: wrong(*t) })
+        .collect();
+    let clearances = (0..file.clearances().len())
+        .map(|k| file.number(&format!("scale_clearance_{k}")).unwrap_or(1.0))
+        .collect();
+    Ok(Reference {
+        trajectory: Trajectory {
+            samples: samples(file)?,
+            events: file.events()?,
+            contacts: file.contacts()?,
+            peaks: file.peaks()?,
+        },
+        wrong,
+        scales: Scales {
+            angle: need("scale_angle")?,
+            angular_velocity: need("scale_angular_velocity")?,
+            velocity: need("scale_velocity")?,
+            clearances,
+            force: need("scale_force")?,
+            torque: need("scale_torque")?,
+        },
+        tolerances: [need("reference_tolerance_tight")?, need("reference_tolerance_loose")?],
+        growth: Growth {
+            factors: growth.into_iter().take_while(|factor| factor.is_finite()).collect(),
+            double_precision_ends: file.number("double_precision_ends"),
+        },
+    })
+}
+
+/// Whether the mechanism in the file is that of the case.
+fn same_mechanism(case: &Case, file: &ResultFile) -> Result<(), NotAReference> {
+    let name = || file.path().display().to_string();
+    let text = file.text("case_toml").unwrap_or_default();
+    let theirs = Case::from_text(file.path(), text, &case::Changes::default())
+        .map_err(|source| NotAReference::Case { file: name(), source })?;
+    let (ours, theirs) = (&case.description, &theirs.description);
+    let differs = [
+        ("[ground]", ours.ground != theirs.ground),
+        ("[bodies]", ours.bodies != theirs.bodies),
+        ("[joints]", ours.joints != theirs.joints),
+        ("[drives]", ours.drives != theirs.drives),
+        ("[loads]", ours.loads != theirs.loads),
+        ("[start]", ours.start != theirs.start),
+    ];
+    match differs.into_iter().find(|(_, differs)| *differs) {
+        Some((what, _)) => Err(NotAReference::OtherMechanism { file: name(), what }),
+        None => Ok(()),
+    }
+}
+
+/// What digits are counted over, of each sample.
+fn samples(file: &ResultFile) -> Result<Vec<Observation>, crate::record::Error> {
+    let times = file.times()?;
+    let mut samples: Vec<Observation> =
+        times.iter().map(|time| Observation { time: *time, ..Observation::default() }).collect();
+    let [angle, rate] = [file.table("angle")?, file.table("angular_velocity")?];
+    let velocity = [file.table("velocity_x")?, file.table("velocity_y")?];
+    let offset = [file.table("clearance_x")?, file.table("clearance_y")?];
+    let [normal, tangential] = [file.table("normal_force")?, file.table("tangential_force")?];
+    let force = [file.table("joint_force_x")?, file.table("joint_force_y")?];
+    let torque = file.table("drive_torque")?;
+    for (row, sample) in samples.iter_mut().enumerate() {
+        let at = |table: &crate::record::Table, item: usize| table.values[row * table.width + item];
+        let two = |tables: &[crate::record::Table; 2], item| [0, 1].map(|c| at(&tables[c], item));
+        sample.bodies = (0..angle.width)
+            .map(|body| BodyObservation {
+                angle: at(&angle, body),
+                angular_velocity: at(&rate, body),
+                velocity: two(&velocity, body),
+                ..BodyObservation::default()
+            })
+            .collect();
+        sample.clearances = (0..normal.width)
+            .map(|k| ClearanceObservation {
+                offset: two(&offset, k),
+                normal_force: at(&normal, k),
+                tangential_force: at(&tangential, k),
+                ..ClearanceObservation::default()
+            })
+            .collect();
+        sample.joints = (0..force[0].width)
+            .map(|k| JointObservation { force: two(&force, k), ..JointObservation::default() })
+            .collect();
+        sample.drive_torques = (0..torque.width).map(|drive| at(&torque, drive)).collect();
+    }
+    Ok(samples)
+}

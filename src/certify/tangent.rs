@@ -1,0 +1,115 @@
+//! A live error meter: the tangent of a trajectory, carried along with it.
+//!
+//! The tangent is the derivative of the trajectory by a relative change of its start, exact to
+//! the engine's accuracy: dual numbers go through the mechanics, through the times of events and
+//! so through the impact rates that contacts remember. Its length in scaled units says how much
+//! an error made at the start has grown.
+
+use super::digits::{MOST_DIGITS, Scales};
+use crate::case::{Case, EngineName, Precision};
+use crate::mechanism::Mechanism;
+use crate::record::{Dimension, Series, Values};
+use crate::run::{Schedule, Trajectory, Watcher};
+use crate::scalar::F256;
+use crate::simulate::{self, assemble, run_tangent};
+use std::convert::Infallible;
+
+/// Relative error of a double.
+const DOUBLE: f64 = 1e-16;
+
+/// The growth of errors along a run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Tangent {
+    /// Sample times (s).
+    pub times: Vec<f64>,
+    /// Scaled length of the tangent per relative change of the start, at each sample.
+    pub growth: Vec<f64>,
+}
+
+/// Carries the tangent of a case along, on the schedule of its run. The arithmetic is that of the
+/// case; an IDA run gets that of the explicit engine at the same tolerance, which follows the same
+/// trajectory for as long as the run follows the truth.
+///
+/// # Errors
+/// See [`simulate::Error`].
+pub fn tangent(
+    case: &Case,
+    schedule: &Schedule,
+    watch: Watcher<'_>,
+) -> Result<Tangent, simulate::Error<Infallible>> {
+    let solver = &case.plan.solver;
+    let mut kept = Trajectory::default();
+    let (_, ran) = match (solver.engine, solver.precision) {
+        (EngineName::Explicit, Precision::Octuple) => {
+            let tolerance = solver.reference_tolerance;
+            run_tangent::<F256, _>(case, schedule, tolerance, &mut kept, watch)
+        }
+        _ => run_tangent::<f64, _>(case, schedule, solver.relative_tolerance, &mut kept, watch),
+    };
+    ran?;
+    let mechanism: Mechanism<f64> = assemble(case).map_err(|source| simulate::Error::Failed {
+        case: case.name.clone(),
+        source: Box::new(source),
+    })?;
+    let clearances = mechanism.model().clearances().iter().map(|c| c.radial).collect();
+    let scales = Scales::of(&kept.samples, clearances);
+    Ok(Tangent {
+        times: kept.samples.iter().map(|sample| sample.time).collect(),
+        growth: kept.samples.iter().map(|sample| scales.beyond(sample)).collect(),
+    })
+}
+
+impl Tangent {
+    /// Digits that a double-precision run has left at each sample: 16 less those that the growth
+    /// of errors has taken so far.
+    pub fn digits_left(&self) -> Vec<f64> {
+        let mut largest: f64 = 0.0;
+        let left = self.growth.iter().map(|growth| {
+            largest = largest.max(*growth);
+            (-(DOUBLE * largest).log10()).min(MOST_DIGITS)
+        });
+        left.collect()
+    }
+
+    /// Mean growth exponent (natural logarithm) per `period` (s), over the whole run.
+    pub fn exponent_per(&self, period: f64) -> Option<f64> {
+        let (first, last) = (self.growth.first()?, self.growth.last()?);
+        let span = self.times.last()? - self.times.first()?;
+        Some((last / first).ln() * period / span).filter(|exponent| exponent.is_finite())
+    }
+
+    /// Growth exponents (natural logarithm) of each whole `period` (s).
+    pub fn exponents(&self, period: f64) -> Vec<f64> {
+        let at = |time: f64| {
+            let place = self.times.partition_point(|t| *t < time * (1.0 - 1e-9));
+            self.growth.get(place).copied()
+        };
+        let ends =
+            (0..).map_while(|k| Some((at(f64::from(k) * period)?, at(f64::from(k + 1) * period)?)));
+        ends.map(|(begin, end)| (end / begin).ln()).collect()
+    }
+
+    /// The datasets that a tangent adds to a result file.
+    pub fn series(&self) -> Vec<Series> {
+        let series = |name, long_name, values| Series {
+            name,
+            unit: "1",
+            long_name,
+            stored: Values::Real,
+            along: Dimension::Time,
+            values,
+        };
+        vec![
+            series(
+                "error_growth",
+                "scaled change of the state per relative change of the start",
+                self.growth.clone(),
+            ),
+            series(
+                "digits_left",
+                "digits that errors of double precision leave",
+                self.digits_left(),
+            ),
+        ]
+    }
+}

@@ -1,0 +1,390 @@
+//! The equations as the steppers see them: one vector y, one independent variable τ.
+//!
+//! ```text
+//! y = (q, v, cos and sin of the turning frames, t, σ of each root carried, integrals)
+//! ```
+//!
+//! While a contact with |δ|^p forces lasts, the solution is not analytic in t at either end of it,
+//! but in a root σ = g^(1/d) of the event function g. So σ is carried as a component, the force is
+//! computed from it ([`System::evaluate_with_roots`]), and the independent variable is paced by it:
+//!
+//! ```text
+//! dt/dτ  = w = ∏ σᵢ^(dᵢ − 1)          (1 without roots: τ is the time)
+//! dσᵢ/dτ = ġᵢ/dᵢ · ∏ σⱼ^(dⱼ − 1), j ≠ i
+//! d·/dτ  = w · d·/dt                  for everything else
+//! ```
+//!
+//! All of it is analytic in τ and y, from σ = 0 through the deepest point to σ = 0 again, for any
+//! number of contacts at once. Where two roots are zero together the flow stands still, and it
+//! creeps where they tend to zero together; the engine steps over both.
+
+use crate::dae::{Direction, Fault, State, System, Turn, Watch};
+use crate::scalar::Scalar;
+
+/// A root σ that is carried: the event function `function` is σ^degree.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Root<S> {
+    /// Index of the event function.
+    pub function: usize,
+    /// Degree d, two or more.
+    pub degree: u32,
+    /// 1/d.
+    pub reciprocal: S,
+}
+
+impl<S: Scalar> Root<S> {
+    /// A root of an event function.
+    pub fn new(function: usize, degree: u32) -> Self {
+        Root { function, degree, reciprocal: S::ratio(1, i64::from(degree)) }
+    }
+}
+
+/// How the approach to an event is measured.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Gauge {
+    /// Not watched.
+    Off,
+    /// By the event function itself, with the sign that makes it rise towards the event.
+    Function {
+        /// Whether the event is a fall of the function.
+        falling: bool,
+    },
+    /// By −σ of the root in this slot.
+    Root {
+        /// Index among the roots carried.
+        slot: usize,
+    },
+}
+
+/// Rates of the approaches (per unit of τ) at one place of a step.
+#[derive(Debug, Clone)]
+pub(super) struct Note {
+    /// Place, as a fraction of the step.
+    pub fraction: f64,
+    /// Rate of each approach.
+    pub rates: Vec<f64>,
+}
+
+/// A system, with the bookkeeping of the vector y.
+pub(super) struct Flow<S, Y> {
+    /// The system.
+    pub system: Y,
+    /// Right-hand sides evaluated.
+    pub evaluations: u64,
+    coordinates: usize,
+    frames: usize,
+    integrals: usize,
+    roots: Vec<Root<S>>,
+    gauges: Vec<Gauge>,
+    root_values: Vec<Option<S>>,
+    root_rates: Vec<S>,
+    pace: S,
+    turns: Vec<Turn<S>>,
+    turn_rates: Vec<S>,
+    angles: Vec<S>,
+    values: Vec<S>,
+    notes: Vec<Note>,
+    notes_used: usize,
+}
+
+impl<S: Scalar, Y: System<S>> Flow<S, Y> {
+    /// A flow without roots.
+    pub fn new(system: Y) -> Self {
+        let (frames, functions) = (system.turns(), system.watches().len());
+        let turn = Turn { cos: S::one(), sin: S::zero() };
+        Flow {
+            coordinates: system.coordinates(),
+            integrals: system.integrals(),
+            frames,
+            roots: Vec::new(),
+            gauges: vec![Gauge::Off; functions],
+            root_values: vec![None; functions],
+            root_rates: vec![S::zero(); functions],
+            pace: S::one(),
+            turns: vec![turn; frames],
+            turn_rates: vec![S::zero(); frames],
+            angles: vec![S::zero(); frames],
+            values: vec![S::zero(); functions],
+            notes: Vec::new(),
+            notes_used: 0,
+            evaluations: 0,
+            system,
+        }
+    }
+
+    /// Number of coordinates.
+    pub fn coordinates(&self) -> usize {
+        self.coordinates
+    }
+
+    /// Index of the first cosine.
+    pub fn first_turn(&self) -> usize {
+        2 * self.coordinates
+    }
+
+    /// Index of the time.
+    pub fn time(&self) -> usize {
+        2 * (self.coordinates + self.frames)
+    }
+
+    /// Index of the root in `slot`.
+    pub fn root(&self, slot: usize) -> usize {
+        self.time() + 1 + slot
+    }
+
+    /// Number of components whose error is controlled: all but the integrals, which follow them.
+    pub fn controlled(&self) -> usize {
+        self.time() + 1 + self.roots.len()
+    }
+
+    /// Number of components.
+    pub fn len(&self) -> usize {
+        self.controlled() + self.integrals
+    }
+
+    /// The largest number of components there can be.
+    pub fn capacity(&self) -> usize {
+        self.time() + 1 + self.gauges.len() + self.integrals
+    }
+
+    /// The roots carried.
+    pub fn roots(&self) -> &[Root<S>] {
+        &self.roots
+    }
+
+    /// How the approach to each event is measured.
+    pub fn gauges(&self) -> &[Gauge] {
+        &self.gauges
+    }
+
+    /// The slot of the root of an event function, if it is carried.
+    pub fn slot(&self, function: usize) -> Option<usize> {
+        self.roots.iter().position(|root| root.function == function)
+    }
+
+    /// Takes these roots, and the system's present watches.
+    pub fn carry(&mut self, roots: Vec<Root<S>>) {
+        self.roots = roots;
+        self.root_values.fill(None);
+        for (k, watch) in self.system.watches().iter().enumerate() {
+            let slot = self.roots.iter().position(|root| root.function == k);
+            self.gauges[k] = match (watch.direction, slot) {
+                (Direction::Off, _) => Gauge::Off,
+                (_, Some(slot)) => Gauge::Root { slot },
+                (direction, None) => Gauge::Function { falling: direction == Direction::Falling },
+            };
+        }
+    }
+
+    /// Sets cosines and sines from the angles.
+    pub fn reset_turns(&mut self, y: &mut [S]) {
+        let (n, first) = (self.coordinates, self.first_turn());
+        self.system.turn_angles(y[self.time()], &y[..n], &mut self.angles);
+        for (j, angle) in self.angles.iter().enumerate() {
+            let (sin, cos) = angle.sin_cos();
+            y[first + 2 * j] = cos;
+            y[first + 2 * j + 1] = sin;
+        }
+    }
+
+    fn load_turns(&mut self, y: &[S]) {
+        let first = self.first_turn();
+        for (turn, pair) in self.turns.iter_mut().zip(y[first..].chunks_exact(2)) {
+            *turn = Turn { cos: pair[0], sin: pair[1] };
+        }
+    }
+
+    /// Evaluates the system at q, v, t and the turns of y alone, for its event rates.
+    pub fn evaluate_without_roots(&mut self, y: &[S]) -> Result<(), Fault> {
+        self.evaluations += 1;
+        self.load_turns(y);
+        let n = self.coordinates;
+        let (q, v) = (&y[..n], &y[n..2 * n]);
+        let state = State { time: y[self.time()], q, v, turns: Some(&self.turns) };
+        self.system.evaluate(state)
+    }
+
+    /// Evaluates the system at y; everything below answers for it.
+    pub fn evaluate(&mut self, y: &[S]) -> Result<(), Fault> {
+        self.evaluations += 1;
+        self.load_turns(y);
+        let (n, time) = (self.coordinates, y[self.time()]);
+        let (q, v) = (&y[..n], &y[n..2 * n]);
+        self.system.turn_rates(time, v, &mut self.turn_rates);
+        let state = State { time, q, v, turns: Some(&self.turns) };
+        if self.roots.is_empty() {
+            self.pace = S::one();
+            return self.system.evaluate(state);
+        }
+        let first = 2 * (n + self.frames) + 1;
+        for (root, sigma) in self.roots.iter().zip(&y[first..]) {
+            self.root_values[root.function] = Some(*sigma);
+        }
+        self.system.evaluate_with_roots(state, &self.root_values)?;
+        self.pace = self.pace_at(y);
+        for slot in 0..self.roots.len() {
+            let root = self.roots[slot];
+            let rate = self.system.event_rate(root.function) * root.reciprocal;
+            self.root_rates[slot] = rate * self.product(y, Some(slot));
+        }
+        Ok(())
+    }
+
+    /// ∏ σ^(d − 1) over all roots but the one left out.
+    fn product(&self, y: &[S], left_out: Option<usize>) -> S {
+        let first = self.time() + 1;
+        let mut product = S::one();
+        let mut bare = true;
+        for (slot, root) in self.roots.iter().enumerate() {
+            if Some(slot) == left_out {
+                continue;
+            }
+            for _ in 1..root.degree {
+                let sigma = y[first + slot];
+                product = if bare { sigma } else { product * sigma };
+                bare = false;
+            }
+        }
+        product
+    }
+
+    /// dt/dτ at y, evaluated or not.
+    pub fn pace_at(&self, y: &[S]) -> S {
+        self.product(y, None)
+    }
+
+    /// d²t/dτ² at y, the place last evaluated.
+    pub fn pace_rate(&self, y: &[S]) -> S {
+        let first = self.time() + 1;
+        let mut sum = S::zero();
+        for (slot, root) in self.roots.iter().enumerate() {
+            let mut term = self.root_rates[slot] * self.product(y, Some(slot));
+            for _ in 2..root.degree {
+                term *= y[first + slot];
+            }
+            sum += term * S::from_f64(f64::from(root.degree - 1));
+        }
+        sum
+    }
+
+    /// Hands out `scale` · dy/dτ, component by component.
+    #[inline(always)]
+    fn spread(&self, y: &[S], scale: S, mut put: impl FnMut(usize, S)) {
+        let (n, time) = (self.coordinates, self.time());
+        let paced = if self.roots.is_empty() { scale } else { scale * self.pace };
+        for (i, v) in y[n..2 * n].iter().enumerate() {
+            put(i, paced * *v);
+        }
+        for (i, a) in self.system.accelerations()[..n].iter().enumerate() {
+            put(n + i, paced * *a);
+        }
+        for (j, (turn, rate)) in self.turns.iter().zip(&self.turn_rates).enumerate() {
+            let rate = paced * *rate;
+            put(2 * (n + j), -(rate * turn.sin));
+            put(2 * (n + j) + 1, rate * turn.cos);
+        }
+        put(time, paced);
+        for (slot, rate) in self.root_rates[..self.roots.len()].iter().enumerate() {
+            put(time + 1 + slot, scale * *rate);
+        }
+        let first = self.controlled();
+        for (i, power) in self.system.powers()[..self.integrals].iter().enumerate() {
+            put(first + i, paced * *power);
+        }
+    }
+
+    /// dy/dτ at y, the place last evaluated.
+    pub fn rates_here(&self, y: &[S], rates: &mut [S]) {
+        self.spread(y, S::one(), |i, rate| rates[i] = rate);
+    }
+
+    /// dy/dτ at y.
+    pub fn rates(&mut self, y: &[S], rates: &mut [S]) -> Result<(), Fault> {
+        self.evaluate(y)?;
+        self.rates_here(y, rates);
+        Ok(())
+    }
+
+    /// Adds `step` · dy/dτ at y to `sum`.
+    pub fn add_rates(&mut self, y: &[S], step: S, sum: &mut [S]) -> Result<(), Fault> {
+        self.evaluate(y)?;
+        self.spread(y, step, |i, rate| sum[i] += rate);
+        Ok(())
+    }
+
+    /// Event functions at y, as the system has them.
+    pub fn event_values(&mut self, y: &[S]) -> Result<&[S], Fault> {
+        self.load_turns(y);
+        let n = self.coordinates;
+        let (q, v) = (&y[..n], &y[n..2 * n]);
+        let state = State { time: y[self.time()], q, v, turns: Some(&self.turns) };
+        self.system.event_values(state, &mut self.values)?;
+        Ok(&self.values)
+    }
+
+    /// The approach to each event at y: it rises through zero at the event. Zero for those that
+    /// are not watched.
+    pub fn approaches(&mut self, y: &[S], approaches: &mut [S]) -> Result<(), Fault> {
+        if self.gauges.iter().any(|gauge| matches!(gauge, Gauge::Function { .. })) {
+            self.event_values(y)?;
+        }
+        let first = self.time() + 1;
+        for (k, gauge) in self.gauges.iter().enumerate() {
+            approaches[k] = match *gauge {
+                Gauge::Off => S::zero(),
+                Gauge::Function { falling: false } => self.values[k],
+                Gauge::Function { falling: true } => -self.values[k],
+                Gauge::Root { slot } => -y[first + slot],
+            };
+        }
+        Ok(())
+    }
+
+    /// Rate of the approach (per unit of τ) to event `k` at the place last evaluated.
+    pub fn approach_rate(&self, k: usize) -> S {
+        match self.gauges[k] {
+            Gauge::Off => S::zero(),
+            Gauge::Function { falling } => {
+                let rate = self.system.event_rate(k) * self.pace;
+                if falling { -rate } else { rate }
+            }
+            Gauge::Root { slot } => -self.root_rates[slot],
+        }
+    }
+
+    /// Whether any approach could rise and fall again unseen within a step.
+    pub fn wants_notes(&self) -> bool {
+        self.gauges.iter().any(|gauge| matches!(gauge, Gauge::Function { .. }))
+    }
+
+    /// Forgets what was noted.
+    pub fn clear_notes(&mut self) {
+        self.notes_used = 0;
+    }
+
+    /// Notes the rates of the approaches at the place last evaluated.
+    pub fn note(&mut self, fraction: f64) {
+        if self.notes_used == self.notes.len() {
+            self.notes.push(Note { fraction, rates: vec![0.0; self.gauges.len()] });
+        }
+        for k in 0..self.gauges.len() {
+            let rate = self.approach_rate(k).to_f64();
+            self.notes[self.notes_used].rates[k] = rate;
+        }
+        self.notes[self.notes_used].fraction = fraction;
+        self.notes_used += 1;
+    }
+
+    /// What was noted, in the order of the places.
+    pub fn notes(&self) -> &[Note] {
+        &self.notes[..self.notes_used]
+    }
+
+    /// The degree of the root in which the solution is analytic beside the end of what is watched
+    /// here, if there is one: a falling function, and a power that is one over an integer.
+    pub fn degree(watch: Watch) -> Option<u32> {
+        let degree = (1.0 / watch.power).round();
+        let whole = (degree * watch.power - 1.0).abs() < 1e-9 && (2.0..=16.0).contains(&degree);
+        (watch.direction == Direction::Falling && whole).then_some(degree as u32)
+    }
+}

@@ -1,0 +1,686 @@
+//! The explicit engine: high order, adaptive, generic in the scalar.
+//!
+//! It shares with any other engine the system and nothing of the solution. In double precision it
+//! is the independent check and the fast lane, in 71 digits the truth.
+//!
+//! - **Steps**: an eighth-order Runge–Kutta method in double precision, extrapolation of the
+//!   midpoint rule with as many columns as pay otherwise. Both work on the vector of `flow.rs`,
+//!   in which contacts are analytic from end to end. Cosines and sines of the turning frames are
+//!   components, set anew from the angles at each step's begin. What rounding takes from a sum
+//!   of state and increment is kept and added to the next.
+//! - **Events** are met by steps that end on them: Newton on the length of the step, with partial
+//!   steps that grow as accurate as the iteration needs them. No interpolant comes near the state.
+//!   Rates at places within a step tell of events that begin and end inside it; partial steps
+//!   decide.
+//! - **Errors** are weighed by component: the largest, in units of the size that
+//!   [`System::scales`] gives it, or of its own magnitude where that is larger by more than
+//!   rounding allows for. Integrals follow without a say.
+//! - **Drift** off the constraints is left to whoever restarts the engine: the equations are of
+//!   index 1, and what drifts is of the size of the errors that the tolerance admits.
+
+mod dop853;
+mod error;
+mod events;
+mod extrapolation;
+mod flow;
+mod runge_kutta;
+mod search;
+mod stepper;
+#[cfg(test)]
+mod tests;
+
+pub use error::ExplicitError;
+
+use crate::dae::{Advance, Count, Engine, Fault, Snapshot, System};
+use crate::scalar::Scalar;
+use events::{Standing, Target};
+use extrapolation::Extrapolation;
+use flow::{Flow, Gauge, Root};
+use runge_kutta::RungeKutta;
+use search::quintic_root;
+use std::collections::HashMap;
+use std::hash::{DefaultHasher, Hash, Hasher};
+use stepper::{Norm, Point, Stepper};
+
+/// Attempts at one step, and steps at one time, after which the engine gives up.
+const PATIENCE: u32 = 100;
+
+/// Steps between two looks at the roots carried.
+const REVISION: u64 = 32;
+/// A root is set anew where it is off its function by so many times the tolerance, and the
+/// function larger than that by as much again.
+const DISAGREEMENT: f64 = 1e3;
+
+/// Size of a root in units of its largest value. What a relative error of the root does to the
+/// velocities is a few times that, of the velocities in the contact, which are a part of the
+/// typical ones; measured, factors of one and ten leave the same errors, a hundred larger ones.
+const ROOT_SIZE: f64 = 10.0;
+
+/// One-step methods.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Method {
+    /// Eighth order, in double precision only.
+    RungeKutta,
+    /// Extrapolation of the midpoint rule, any order.
+    Extrapolation,
+}
+
+/// Settings of the explicit engine.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Options {
+    /// Error that a step may make, relative to the sizes of [`System::scales`].
+    pub tolerance: f64,
+    /// Length of the first step (s).
+    pub initial_step: f64,
+    /// Largest length of a step (s).
+    pub max_step: f64,
+    /// One-step method; `None` takes the one that suits the arithmetic.
+    pub method: Option<Method>,
+}
+
+impl Default for Options {
+    /// A tolerance of 1e-12, and steps that begin at a microsecond.
+    fn default() -> Self {
+        Options { tolerance: 1e-12, initial_step: 1e-6, max_step: f64::INFINITY, method: None }
+    }
+}
+
+/// Counts of work.
+#[derive(Debug, Clone, Copy, Default)]
+struct Tally {
+    steps: u64,
+    rejected: u64,
+    partial: u64,
+    events: u64,
+    restarts: u64,
+}
+
+/// The explicit engine (see the module's header). Make it, `restart` it, then step.
+pub struct Explicit<S: Scalar, Y: System<S>> {
+    flow: Flow<S, Y>,
+    stepper: Stepper<S>,
+    options: Options,
+    norm: Norm,
+    sizes: Vec<f64>,
+    deepest: Vec<f64>,
+    /// Begin of the last step.
+    from: Point<S>,
+    /// End of the last step.
+    here: Point<S>,
+    /// Where a partial step led.
+    probe: Point<S>,
+    /// Rates of y, and of what is aimed at, where the partial step before led.
+    last_rates: Vec<S>,
+    last_rate: S,
+    /// Length of the last step in τ.
+    length: S,
+    /// Length that suits the next step in τ.
+    next: f64,
+    /// Lengths that suited the first step after a restart in the same modes.
+    first_lengths: HashMap<u64, f64>,
+    modes: u64,
+    fresh: bool,
+    evaluated_here: bool,
+    standing: Vec<Standing>,
+    fired: Vec<bool>,
+    idle: u32,
+    now: Snapshot<S>,
+    tally: Tally,
+}
+
+impl<S: Scalar, Y: System<S>> Explicit<S, Y> {
+    /// An engine for a system; it needs a restart before its first step.
+    pub fn new(system: Y, options: Options) -> Result<Self, ExplicitError> {
+        let smallest = 4.0 * S::EPSILON;
+        if !(options.tolerance >= smallest && options.tolerance <= 1e-2) {
+            return Err(ExplicitError::Tolerance { tolerance: options.tolerance, smallest });
+        }
+        if !(options.initial_step > 0.0 && options.max_step > 0.0) {
+            return Err(ExplicitError::StepLength);
+        }
+        let flow = Flow::new(system);
+        let (capacity, functions) = (flow.capacity(), flow.gauges().len());
+        let coarse = S::EPSILON >= f64::EPSILON;
+        let stepper = match options.method {
+            Some(Method::RungeKutta) if !coarse => return Err(ExplicitError::Coefficients),
+            None if coarse => Stepper::RungeKutta(RungeKutta::new(capacity)),
+            Some(Method::RungeKutta) => Stepper::RungeKutta(RungeKutta::new(capacity)),
+            _ => Stepper::Extrapolation(Extrapolation::new(capacity, options.tolerance)),
+        };
+        let now = Snapshot::new(flow.coordinates(), flow.system.integrals());
+        let point = Point::new(capacity, functions);
+        Ok(Explicit {
+            stepper,
+            norm: Norm { weights: Vec::with_capacity(capacity), tolerance: options.tolerance },
+            sizes: sizes_of(&flow),
+            deepest: vec![0.0; functions],
+            from: point.clone(),
+            here: point.clone(),
+            probe: point,
+            last_rates: vec![S::zero(); capacity],
+            last_rate: S::zero(),
+            length: S::zero(),
+            next: options.initial_step,
+            first_lengths: HashMap::new(),
+            modes: 0,
+            fresh: true,
+            evaluated_here: false,
+            standing: vec![Standing::Passed; functions],
+            fired: vec![false; functions],
+            idle: 0,
+            now,
+            tally: Tally::default(),
+            flow,
+            options,
+        })
+    }
+
+    fn time(&self) -> f64 {
+        self.now.time.to_f64()
+    }
+
+    /// Begin of the last step (s).
+    fn step_begin(&self) -> f64 {
+        self.from.y[self.flow.time()].to_f64()
+    }
+
+    fn fault(&self, source: Fault) -> ExplicitError {
+        ExplicitError::System { time: self.time(), source }
+    }
+
+    /// Event functions count as zero below this.
+    fn noise(&self, rate: f64) -> f64 {
+        S::EPSILON * (1e3 + 8.0 * rate.abs() * self.time().abs())
+    }
+
+    /// Takes y as it stands in `here`: cosines and sines from the angles, rates, approaches.
+    fn arrive(&mut self) -> Result<(), Fault> {
+        let (flow, here) = (&mut self.flow, &mut self.here);
+        flow.reset_turns(&mut here.y);
+        let turns = flow.first_turn()..flow.time();
+        here.low[turns].fill(S::zero());
+        flow.approaches(&here.y, &mut here.approaches)?;
+        flow.rates(&here.y, &mut here.rates)?;
+        for k in 0..here.approach_rates.len() {
+            here.approach_rates[k] = flow.approach_rate(k);
+        }
+        here.pace_rate = flow.pace_rate(&here.y);
+        self.evaluated_here = true;
+        Ok(())
+    }
+
+    /// Writes `here` into the snapshot.
+    fn take_snapshot(&mut self) {
+        let (n, y) = (self.flow.coordinates(), &self.here.y);
+        self.now.time = y[self.flow.time()];
+        self.now.q.copy_from_slice(&y[..n]);
+        self.now.v.copy_from_slice(&y[n..2 * n]);
+        self.now.integrals.copy_from_slice(&y[self.flow.controlled()..self.flow.len()]);
+    }
+
+    /// Weighs the components for a step from `from`.
+    fn weigh(&mut self, length: f64) {
+        let (flow, from) = (&self.flow, &self.from);
+        let rounding = S::EPSILON / self.options.tolerance;
+        self.norm.weights.clear();
+        for (size, y) in self.sizes.iter().zip(&from.y) {
+            self.norm.weights.push(1.0 / size.max(y.to_f64().abs() * rounding));
+        }
+        for (slot, root) in flow.roots().iter().enumerate() {
+            let i = flow.root(slot);
+            let reach = (from.rates[i].to_f64() * length).abs();
+            let deepest = &mut self.deepest[root.function];
+            *deepest = deepest.max(from.y[i].to_f64().abs());
+            self.norm.weights.push(1.0 / (ROOT_SIZE * deepest.max(reach)));
+        }
+    }
+
+    /// Length in τ of a duration (s) from `here`, roughly, with growing roots in mind.
+    fn length_of(&self, duration: f64) -> f64 {
+        let flow = &self.flow;
+        if flow.roots().is_empty() || !duration.is_finite() {
+            return duration;
+        }
+        let lasts = |tau: f64| {
+            flow.roots().iter().enumerate().fold(tau, |product, (slot, root)| {
+                let i = flow.root(slot);
+                let growth = 0.5 * self.here.rates[i].to_f64().max(0.0) * tau;
+                product * (self.here.y[i].to_f64() + growth).powi(root.degree as i32 - 1)
+            })
+        };
+        let (mut low, mut high) = (1e-300_f64, 1e300_f64);
+        for _ in 0..64 {
+            let middle = (low.ln().midpoint(high.ln())).exp();
+            if lasts(middle) > duration { high = middle } else { low = middle }
+        }
+        low
+    }
+
+    /// Puts q, v, t and the integrals of a snapshot into `here`; where they are those of the last
+    /// step's end, what rounding left out of them is kept.
+    fn put(&mut self, now: &Snapshot<S>) {
+        let n = self.flow.coordinates();
+        let time = self.flow.time();
+        let here = &mut self.here;
+        let mut set = |i: usize, value: S| {
+            if here.y[i] != value {
+                here.low[i] = S::zero();
+            }
+            // equal or not: numbers that carry more than a value compare by the value alone
+            here.y[i] = value;
+        };
+        for i in 0..n {
+            set(i, now.q[i]);
+            set(n + i, now.v[i]);
+        }
+        set(time, now.time);
+        let first = self.flow.controlled();
+        for (i, value) in now.integrals.iter().enumerate() {
+            here.y[first + i] = *value;
+            here.low[first + i] = S::zero();
+        }
+    }
+
+    /// The roots to carry from here on, with their values: a root that was carried goes on where
+    /// it still is one, a function that stands at zero begins at zero, others from their values.
+    /// None where the function does not get away from zero at a rate of its own.
+    fn roots_from_here(&mut self, goes_on: bool) -> Result<Vec<(Root<S>, S)>, Fault> {
+        let carried: Vec<(usize, S)> = if goes_on {
+            let slots = self.flow.roots().iter().enumerate();
+            slots.map(|(slot, root)| (root.function, self.here.y[self.flow.root(slot)])).collect()
+        } else {
+            Vec::new()
+        };
+        let values = self.flow.event_values(&self.here.y)?.to_vec();
+        let mut roots = Vec::new();
+        for (k, watch) in self.flow.system.watches().iter().enumerate() {
+            let Some(degree) = Flow::<S, Y>::degree(*watch) else { continue };
+            let before = carried.iter().find(|(function, _)| *function == k);
+            let sigma = match before {
+                Some((_, sigma)) if !self.fired[k] => Some(*sigma),
+                _ => self.first_root(k, degree, values[k], goes_on && self.fired[k]),
+            };
+            roots.extend(sigma.map(|sigma| (Root::new(k, degree), sigma)));
+        }
+        Ok(roots)
+    }
+
+    /// Value of a root that has not been carried so far; the system stands evaluated here.
+    fn first_root(&self, k: usize, degree: u32, value: S, fired: bool) -> Option<S> {
+        let rate = self.flow.system.event_rate(k).to_f64();
+        let noise = self.noise(rate);
+        let away = rate * self.options.initial_step > noise;
+        if fired || value.to_f64() <= noise {
+            return away.then(S::zero);
+        }
+        let enough = away || value.to_f64() > 1e4 * noise;
+        enough.then(|| root_of(value, degree))
+    }
+
+    /// Roots that are zero together would hold the flow: they are set to where they come to be
+    /// after a time too short to matter.
+    fn part_roots(&self, roots: &mut [(Root<S>, S)]) {
+        if roots.iter().filter(|(_, sigma)| *sigma == S::zero()).count() < 2 {
+            return;
+        }
+        let moment = S::from_f64(self.options.tolerance * self.options.initial_step);
+        for (root, sigma) in roots.iter_mut().filter(|(_, sigma)| *sigma == S::zero()) {
+            let rate = self.flow.system.event_rate(root.function);
+            *sigma = root_of(rate * moment, root.degree);
+        }
+    }
+
+    /// Changes the roots carried; q, v, t and integrals of `here` stay.
+    fn carry(&mut self, roots: Vec<(Root<S>, S)>) {
+        let old = self.flow.controlled()..self.flow.len();
+        let integrals: Vec<(S, S)> = old.map(|i| (self.here.y[i], self.here.low[i])).collect();
+        let (roots, values): (Vec<Root<S>>, Vec<S>) = roots.into_iter().unzip();
+        let kept: Vec<(usize, S, S)> = (0..self.flow.roots().len())
+            .map(|slot| (slot, self.flow.root(slot)))
+            .map(|(slot, i)| (self.flow.roots()[slot].function, self.here.y[i], self.here.low[i]))
+            .collect();
+        for root in &roots {
+            if self.flow.slot(root.function).is_none() {
+                self.deepest[root.function] = 0.0;
+            }
+        }
+        self.flow.carry(roots);
+        for (slot, value) in values.into_iter().enumerate() {
+            let (i, function) = (self.flow.root(slot), self.flow.roots()[slot].function);
+            let same = kept.iter().find(|(k, y, _)| *k == function && *y == value);
+            self.here.y[i] = value;
+            self.here.low[i] = same.map_or(S::zero(), |(_, _, low)| *low);
+        }
+        let first = self.flow.controlled();
+        for (i, (value, low)) in integrals.into_iter().enumerate() {
+            self.here.y[first + i] = value;
+            self.here.low[first + i] = low;
+        }
+    }
+
+    /// The root to carry of function `k` here: that which is carried, unless it no longer agrees
+    /// with its function; or a first one, once the function has come away from zero.
+    fn revised_root(&self, k: usize, degree: u32, value: S) -> Option<S> {
+        let Some(slot) = self.flow.slot(k) else {
+            let away = value.to_f64() > 1e4 * self.noise(0.0);
+            return away.then(|| root_of(value, degree));
+        };
+        let sigma = self.here.y[self.flow.root(slot)];
+        let power = (1..degree).fold(sigma, |power, _| power * sigma);
+        let off = (power - value).to_f64().abs();
+        let stale = off > DISAGREEMENT * (self.options.tolerance + S::EPSILON);
+        let telling = value.to_f64() > DISAGREEMENT * off;
+        Some(if stale && telling { root_of(value, degree) } else { sigma })
+    }
+
+    /// Now and then, looks whether the roots carried are still the right ones.
+    fn revise_roots(&mut self) -> Result<(), Fault> {
+        let mut powers = self.flow.system.watches().iter().enumerate();
+        let waiting =
+            powers.any(|(k, w)| Flow::<S, Y>::degree(*w).is_some() && self.flow.slot(k).is_none());
+        let due = self.tally.steps.is_multiple_of(REVISION) && !self.flow.roots().is_empty();
+        if !(waiting || due) {
+            return Ok(());
+        }
+        let values = self.flow.event_values(&self.here.y)?.to_vec();
+        let mut roots = Vec::new();
+        for (k, watch) in self.flow.system.watches().iter().enumerate() {
+            let Some(degree) = Flow::<S, Y>::degree(*watch) else { continue };
+            let sigma = self.revised_root(k, degree, values[k]);
+            roots.extend(sigma.map(|sigma| (Root::new(k, degree), sigma)));
+        }
+        let same = |(root, sigma): &(Root<S>, S)| {
+            let slot = self.flow.slot(root.function);
+            slot.is_some_and(|slot| self.here.y[self.flow.root(slot)] == *sigma)
+        };
+        if !roots.iter().all(same) {
+            for (root, _) in &roots {
+                self.standing[root.function] = Standing::Below;
+            }
+            self.carry(roots);
+            self.arrive()?;
+        }
+        Ok(())
+    }
+
+    /// The step itself, from `from`; leaves its end in `here`.
+    fn advance(&mut self, end: S) -> Result<Advance, ExplicitError> {
+        let mut said = None;
+        for _ in 0..PATIENCE {
+            let time = self.flow.time();
+            let remaining = end - self.from.y[time];
+            let bare = self.flow.roots().is_empty();
+            let last = bare && self.next >= remaining.to_f64() * (1.0 - 1e-12);
+            let length = if last { remaining } else { S::from_f64(self.next) };
+            self.weigh(length.to_f64());
+            let noting = self.flow.wants_notes();
+            let attempt =
+                self.stepper.attempt(&mut self.flow, &self.from, length, &self.norm, noting);
+            let attempt = match attempt {
+                Ok(attempt) => attempt,
+                Err(fault) => {
+                    // fatal or not: a trial state may be nowhere near the trajectory
+                    said = Some(fault);
+                    self.reject(length.to_f64() * 0.25);
+                    continue;
+                }
+            };
+            if !attempt.accepted {
+                self.reject(attempt.next.min(0.9 * length.to_f64()));
+                continue;
+            }
+            self.here.displace(&self.from, self.stepper.increment());
+            if last {
+                self.here.y[time] = end;
+                self.here.low[time] = S::zero();
+            }
+            if let Err(fault) = self.arrive() {
+                said = Some(fault);
+                self.reject(length.to_f64() * 0.25);
+                continue;
+            }
+            if !last {
+                self.next = attempt.next;
+                if std::mem::take(&mut self.fresh) {
+                    self.first_lengths.insert(self.modes, self.next);
+                }
+            }
+            self.length = length;
+            return self.meet_events(end);
+        }
+        Err(ExplicitError::StepTooSmall {
+            time: self.time(),
+            tolerance: self.options.tolerance,
+            step: self.next,
+            source: said,
+        })
+    }
+
+    fn reject(&mut self, next: f64) {
+        self.tally.rejected += 1;
+        self.next = next;
+    }
+
+    /// A step without length, at events that are there already.
+    fn stand(&mut self) {
+        self.from.clone_from(&self.here);
+        self.length = S::zero();
+    }
+
+    /// Guards against steps and events that go on at one time.
+    fn count_progress(&mut self, before: S) -> Result<(), ExplicitError> {
+        self.idle = if self.now.time > before { 0 } else { self.idle + 1 };
+        if self.idle > PATIENCE {
+            return Err(ExplicitError::Stuck { time: self.time() });
+        }
+        Ok(())
+    }
+}
+
+/// The d-th root of a positive number.
+fn root_of<S: Scalar>(value: S, degree: u32) -> S {
+    if degree == 2 { value.sqrt() } else { value.powf(S::ratio(1, i64::from(degree))) }
+}
+
+/// Sizes by which errors are weighed: of q and v as the system has them, one for cosines and
+/// sines, and for the time the shortest that a typical velocity takes for a typical coordinate.
+fn sizes_of<S: Scalar, Y: System<S>>(flow: &Flow<S, Y>) -> Vec<f64> {
+    let (q, v) = flow.system.scales();
+    let mut sizes = [q, v].concat();
+    sizes.resize(flow.time(), 1.0);
+    sizes.push(q.iter().zip(v).map(|(q, v)| q / v).fold(f64::INFINITY, f64::min));
+    sizes
+}
+
+impl<S: Scalar, Y: System<S>> Engine<S> for Explicit<S, Y> {
+    type System = Y;
+    type Error = ExplicitError;
+
+    fn system(&mut self) -> &mut Y {
+        &mut self.flow.system
+    }
+
+    fn restart(&mut self, now: &Snapshot<S>) -> Result<(), ExplicitError> {
+        let finite = |list: &[S]| list.iter().all(|x| x.is_finite());
+        if !(now.time.is_finite() && finite(&now.q) && finite(&now.v)) {
+            return Err(ExplicitError::NotFinite { time: now.time.to_f64() });
+        }
+        let goes_on = self.tally.restarts > 0 && now.time == self.now.time;
+        self.tally.restarts += 1;
+        self.put(now);
+        if !goes_on {
+            self.fired.fill(false);
+            self.idle = 0;
+        }
+        self.now.clone_from(now);
+        self.begin(goes_on).map_err(|fault| self.fault(fault))?;
+        let mut hasher = DefaultHasher::new();
+        for watch in self.flow.system.watches() {
+            (watch.direction as u8).hash(&mut hasher);
+        }
+        self.modes = hasher.finish();
+        self.next = match self.first_lengths.get(&self.modes) {
+            Some(length) => *length,
+            None => self.length_of(self.options.initial_step),
+        };
+        self.fresh = true;
+        self.fired.fill(false);
+        self.stand();
+        Ok(())
+    }
+
+    fn step(&mut self, end: S) -> Result<Advance, ExplicitError> {
+        let before = self.now.time;
+        self.fired.fill(false);
+        if self.fire_standing() {
+            self.stand();
+            self.tally.events += 1;
+            self.count_progress(before)?;
+            return Ok(Advance::Event);
+        }
+        if end <= before {
+            self.stand();
+            return Ok(Advance::Stepped);
+        }
+        self.revise_roots().map_err(|fault| self.fault(fault))?;
+        self.next = self.next.min(self.length_of(self.options.max_step));
+        std::mem::swap(&mut self.from, &mut self.here);
+        let advance = self.advance(end)?;
+        if !self.evaluated_here {
+            self.flow.evaluate(&self.here.y).map_err(|fault| self.fault(fault))?;
+            self.evaluated_here = true;
+        }
+        self.take_snapshot();
+        self.tally.steps += 1;
+        self.count_progress(before)?;
+        self.tally.events += u64::from(advance == Advance::Event);
+        self.settle();
+        Ok(advance)
+    }
+
+    fn now(&self) -> &Snapshot<S> {
+        &self.now
+    }
+
+    fn began(&self) -> S {
+        self.from.y[self.flow.time()]
+    }
+
+    /// A partial step, of as many right-hand sides as a step (two or three times as many while a
+    /// contact lasts, to find the place). The system is left evaluated somewhere in the step.
+    fn within(&mut self, time: S, at: &mut Snapshot<S>) -> Result<(), ExplicitError> {
+        let (began, now) = (self.began(), self.now.time);
+        if !(time >= began && time <= now) {
+            let [time, began, now] = [time, began, now].map(Scalar::to_f64);
+            return Err(ExplicitError::NotWithin { time, began, now });
+        }
+        if time == now {
+            at.clone_from(&self.now);
+            return Ok(());
+        }
+        if self.flow.roots().is_empty() {
+            self.partial(time - began, self.options.tolerance)?;
+        } else {
+            let guess = self.place_of(time);
+            self.land(Target::Time(time), self.length, guess, false)?;
+        }
+        self.take_probe(at);
+        at.time = time;
+        Ok(())
+    }
+
+    fn glance(
+        &mut self,
+        time: S,
+        accuracy: f64,
+        at: &mut Snapshot<S>,
+    ) -> Result<(), ExplicitError> {
+        if time == self.now.time {
+            at.clone_from(&self.now);
+            return Ok(());
+        }
+        let place = match self.flow.roots().is_empty() {
+            true => time - self.began(),
+            false => self.length * S::from_f64(self.place_of(time)),
+        };
+        self.partial(place, accuracy.max(self.options.tolerance))?;
+        self.take_probe(at);
+        Ok(())
+    }
+
+    fn fired(&self) -> &[bool] {
+        &self.fired
+    }
+
+    fn counts(&self) -> Vec<Count> {
+        let tally = &self.tally;
+        let count = |name, value| Count { name, value };
+        vec![
+            count("steps", tally.steps),
+            count("rejected_steps", tally.rejected),
+            count("partial_steps", tally.partial),
+            count("right_hand_sides", self.flow.evaluations),
+            count("events", tally.events),
+            count("restarts", tally.restarts),
+        ]
+    }
+}
+
+impl<S: Scalar, Y: System<S>> Explicit<S, Y> {
+    /// Writes `probe` into a snapshot.
+    fn take_probe(&self, at: &mut Snapshot<S>) {
+        let (n, y) = (self.flow.coordinates(), &self.probe.y);
+        at.time = y[self.flow.time()];
+        at.q.copy_from_slice(&y[..n]);
+        at.v.copy_from_slice(&y[n..2 * n]);
+        at.integrals.copy_from_slice(&y[self.flow.controlled()..self.flow.len()]);
+    }
+
+    /// Where in the last step a time lies, as a fraction of its length: from time and pace at
+    /// its ends.
+    fn place_of(&self, time: S) -> f64 {
+        let (i, h) = (self.flow.time(), self.length.to_f64());
+        let end = |point: &Point<S>| {
+            let pace = self.flow.pace_at(&point.y).to_f64();
+            [(point.y[i] - time).to_f64(), pace * h, point.pace_rate.to_f64() * h * h]
+        };
+        quintic_root(end(&self.from), end(&self.here))
+    }
+
+    /// Decides on the roots to carry, evaluates the system here, and arms the events.
+    fn begin(&mut self, goes_on: bool) -> Result<(), Fault> {
+        self.flow.reset_turns(&mut self.here.y);
+        self.flow.evaluate_without_roots(&self.here.y)?;
+        let mut roots = self.roots_from_here(goes_on)?;
+        self.part_roots(&mut roots);
+        self.carry(roots);
+        self.arrive()?;
+        self.arm()
+    }
+
+    /// Partial step to `probe`, which is to lie this far into the step; from its nearer end.
+    fn partial(&mut self, place: S, tolerance: f64) -> Result<(), ExplicitError> {
+        self.tally.partial += 1;
+        self.evaluated_here = false;
+        let (base, length) = if place + place > self.length {
+            (&self.here, place - self.length)
+        } else {
+            (&self.from, place)
+        };
+        self.norm.tolerance = tolerance;
+        let done = self.stepper.partial(&mut self.flow, base, length, &self.norm);
+        self.norm.tolerance = self.options.tolerance;
+        let time = base.y[self.flow.time()].to_f64();
+        if !done.map_err(|source| ExplicitError::System { time, source })? {
+            let target = format!("a place {:e} into it", place.to_f64());
+            return Err(ExplicitError::Landing { time: self.step_begin(), target });
+        }
+        self.probe.displace(base, self.stepper.increment());
+        Ok(())
+    }
+
+    /// Whether the approach to any event is measured by the event function itself.
+    fn is_watched(&self, k: usize) -> bool {
+        self.flow.gauges()[k] != Gauge::Off
+    }
+}
