@@ -408,6 +408,9 @@ pub(super) fn range_of(values: impl IntoIterator<Item = f64>) -> Option<[f64; 2]
 /// Least width of an axis that shows more than the last digits of its values, in units of these.
 const LEAST_SPAN: f64 = 0.01;
 
+/// Share of a range within which an end counts as zero: nobody could see the difference.
+const AT_ZERO: f64 = 1e-6;
+
 /// A range with room about it, a twentieth of it each side; an end at zero stays there, and a range
 /// so narrow that only digits far behind the point would tell its ends apart is widened.
 pub(super) fn with_room(range: Option<[f64; 2]>) -> [f64; 2] {
@@ -420,8 +423,11 @@ pub(super) fn with_room(range: Option<[f64; 2]>) -> [f64; 2] {
         let middle = 0.5 * (low + high);
         return [middle - 0.5 * LEAST_SPAN * largest, middle + 0.5 * LEAST_SPAN * largest];
     }
-    let room = 0.05 * (high - low);
-    [if low == 0.0 { 0.0 } else { low - room }, if high == 0.0 { 0.0 } else { high + room }]
+    let (room, nothing) = (0.05 * (high - low), AT_ZERO * (high - low));
+    [
+        if low.abs() <= nothing { 0.0 } else { low - room },
+        if high.abs() <= nothing { 0.0 } else { high + room },
+    ]
 }
 
 #[cfg(test)]
@@ -445,6 +451,7 @@ mod tests {
         assert_eq!(with_room(Some([0.0, 2.0])), [0.0, 2.1]);
         assert_eq!(with_room(Some([-2.0, 0.0])), [-2.1, 0.0]);
         assert_eq!(with_room(Some([-1.0, 1.0])), [-1.1, 1.1]);
+        assert_eq!(with_room(Some([-1e-9, 2.0]))[0], 0.0);
         assert_eq!(with_room(Some([0.0, 0.0])), [0.0, 1.0]);
         assert_eq!(with_room(None), [0.0, 1.0]);
         let [low, high] = with_room(Some([13.7, 13.7 + 1e-9]));
