@@ -87,6 +87,20 @@ fn what_exists_stays_without_force_and_then_nothing_is_written() {
 }
 
 #[test]
+fn figures_can_be_chosen_by_name_and_by_kind() {
+    let folder = folder();
+    let file = run(folder.path(), "four-bar-a");
+    let figures = folder.path().join("figures");
+    assert!(plot(&[&file], &figures, &["--only", "journal-path,force"]).status.success());
+    let expected =
+        ["force-A.svg", "force-A0.svg", "force-B.svg", "force-B0.svg", "journal-path.svg"];
+    assert_eq!(files_in(&figures), expected);
+    let refused = plot(&[&file], &figures, &["--only", "force-C", "--force"]);
+    assert_eq!(refused.status.code(), Some(2), "{refused:?}");
+    assert!(told(&refused).contains("there is no figure \"force-C\" (did you mean \"force-"));
+}
+
+#[test]
 fn the_same_files_give_the_same_bytes_in_every_format() {
     let folder = folder();
     let file = run(folder.path(), "four-bar-c");

@@ -23,6 +23,7 @@ fn simulated(case: &str, changes: &[&str], ideal: bool) -> ResultFile {
         counts: Vec::new(),
         rulings: Vec::new(),
         finished_utc: String::new(),
+        series: Vec::new(),
     };
     // The file stays readable while it is open, though its folder goes.
     ResultFile::open(&writer.finish(ending).unwrap()).unwrap()

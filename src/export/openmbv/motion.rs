@@ -76,8 +76,7 @@ fn put(group: &Group, name: &str, labels: &[&str; 8], motion: &Array2<f64>) -> h
     if motion.nrows() > 0 {
         dataset.write(motion)?;
     }
-    let labels: Result<Vec<VarLenAscii>, _> =
-        labels.iter().map(|label| VarLenAscii::from_ascii(label)).collect();
+    let labels: Result<Vec<VarLenAscii>, _> = labels.iter().map(VarLenAscii::from_ascii).collect();
     let labels = labels.map_err(|error| hdf5::Error::from(error.to_string()))?;
     dataset.new_attr::<VarLenAscii>().shape(8).create("Column Label")?.write(&labels)
 }
