@@ -139,6 +139,7 @@ fn other_pages(paper: &[PathBuf]) -> Vec<PathBuf> {
         page_on("ideal", &paper[..1]),
         page_on("friction", &[simulate("four-bar-a-friction", "friction", &[])]),
         page_on("journal", &[simulate("journal-in-bearing", "journal", &[])]),
+        page_on("adaptive", &[simulate("four-bar-c", "adaptive", &["run.sampling=adaptive"])]),
         page_on("same-names", &[paper[1].clone(), short]),
         page_on("one-sample", &[one_sample.write(&one, true)]),
         page_on("uneven", &[uneven.write(&odd, true)]),
@@ -434,7 +435,7 @@ fn the_page_fits_desktop_and_phone_in_light_and_dark_and_prints() {
 #[test]
 fn unlike_runs_are_shown_too() {
     let others = seen().told["others"].as_object().unwrap();
-    assert_eq!(others.len(), 8);
+    assert_eq!(others.len(), 9);
     for (name, page) in others {
         assert_eq!(page["ready"], true, "{name}");
         assert_eq!(page["troubles"], serde_json::json!([]), "{name}");

@@ -182,9 +182,34 @@ impl Panel {
         widest(&self.x.ticks(width, self.spacing()[0]).labels)
     }
 
-    /// Width of the legend (pt).
-    pub fn legend_width(&self) -> f64 {
-        self.legend.iter().map(|(_, words)| entry_width(words)).sum::<f64>()
+    /// Lines over the frame that label and legend need, on a page with so much room for them (pt):
+    /// one if they fit beside each other, else the legend's own and one for the label.
+    pub fn header_lines(&self, room: f64) -> usize {
+        let legend = self.legend_lines(room);
+        let beside =
+            self.label.width(SMALL_TYPE) + self.legend.iter().map(entry_width).sum::<f64>();
+        match (legend.len(), self.label.is_empty()) {
+            (0, true) => 0,
+            (lines, false) if beside > room => lines + 1,
+            (lines, _) => lines.max(1),
+        }
+    }
+
+    /// Entries of the legend in lines that fit the room (pt).
+    fn legend_lines(&self, room: f64) -> Vec<&[(Sample, Text)]> {
+        let mut lines = Vec::new();
+        let mut rest = self.legend.as_slice();
+        while !rest.is_empty() {
+            let mut width = 0.0;
+            let fits = |entry: &&(Sample, Text)| {
+                width += entry_width(entry);
+                width <= room
+            };
+            let (line, others) = rest.split_at(rest.iter().take_while(fits).count().max(1));
+            lines.push(line);
+            rest = others;
+        }
+        lines
     }
 
     /// Draws the panel. `title_at` is how far left of the frame the vertical axis' title stands.
@@ -324,21 +349,15 @@ impl Panel {
         frame.corner[1] + frame.size[1] * (high - y) / (high - low)
     }
 
-    /// Draws the legend so that it ends at a point.
-    pub fn draw_legend(&self, svg: &mut Svg, [end, line]: Point) {
-        let mut x = end - self.legend_width();
-        for (sample, words) in &self.legend {
-            let y = line - MIDDLE * SMALL_TYPE;
-            let from = x + LEGEND_GAP;
-            let to = from + SAMPLE;
-            match sample {
-                Sample::Line(stroke) => svg.lines([[[from, y], [to, y]]], stroke),
-                Sample::Bar(colour) => {
-                    svg.rectangles([[[from, y - 2.5], [to, y + 2.5]]], colour);
-                }
+    /// Draws the legend in its lines, `line_height` (pt) apart, the first of which ends at a point.
+    pub fn draw_legend(&self, svg: &mut Svg, [end, top]: Point, room: f64, line_height: f64) {
+        for (number, entries) in self.legend_lines(room).into_iter().enumerate() {
+            let line = top + line_height * number as f64;
+            let mut x = end - entries.iter().map(entry_width).sum::<f64>();
+            for entry in entries {
+                draw_entry(svg, [x + LEGEND_GAP, line], entry);
+                x += entry_width(entry);
             }
-            svg.text([to + SAMPLE_GAP, line], Anchor::Start, SMALL_TYPE, words);
-            x += entry_width(words);
         }
     }
 
@@ -360,8 +379,17 @@ const SAMPLE_GAP: f64 = 3.0;
 /// Distance between entries (pt).
 const LEGEND_GAP: f64 = 9.0;
 
-fn entry_width(words: &Text) -> f64 {
+fn entry_width((_, words): &(Sample, Text)) -> f64 {
     LEGEND_GAP + SAMPLE + SAMPLE_GAP + words.width(SMALL_TYPE)
+}
+
+fn draw_entry(svg: &mut Svg, [from, line]: Point, (sample, words): &(Sample, Text)) {
+    let (y, to) = (line - MIDDLE * SMALL_TYPE, from + SAMPLE);
+    match sample {
+        Sample::Line(stroke) => svg.lines([[[from, y], [to, y]]], stroke),
+        Sample::Bar(colour) => svg.rectangles([[[from, y - 2.5], [to, y + 2.5]]], colour),
+    }
+    svg.text([to + SAMPLE_GAP, line], Anchor::Start, SMALL_TYPE, words);
 }
 
 /// The line at zero, where an axis has both signs.
@@ -380,10 +408,13 @@ pub(super) fn range_of(values: impl IntoIterator<Item = f64>) -> Option<[f64; 2]
 /// Least width of an axis that shows more than the last digits of its values, in units of these.
 const LEAST_SPAN: f64 = 0.01;
 
+/// Share of a range within which an end counts as zero: nobody could see the difference.
+const AT_ZERO: f64 = 1e-6;
+
 /// A range with room about it, a twentieth of it each side; an end at zero stays there, and a range
 /// so narrow that only digits far behind the point would tell its ends apart is widened.
 pub(super) fn with_room(range: Option<[f64; 2]>) -> [f64; 2] {
-    let [low, high] = range.unwrap_or([0.0, 1.0]);
+    let [low, high] = range.unwrap_or_default();
     let largest = low.abs().max(high.abs());
     if largest == 0.0 {
         return [0.0, 1.0];
@@ -392,6 +423,76 @@ pub(super) fn with_room(range: Option<[f64; 2]>) -> [f64; 2] {
         let middle = 0.5 * (low + high);
         return [middle - 0.5 * LEAST_SPAN * largest, middle + 0.5 * LEAST_SPAN * largest];
     }
-    let room = 0.05 * (high - low);
-    [if low == 0.0 { 0.0 } else { low - room }, if high == 0.0 { 0.0 } else { high + room }]
+    let (room, nothing) = (0.05 * (high - low), AT_ZERO * (high - low));
+    [
+        if low.abs() <= nothing { 0.0 } else { low - room },
+        if high.abs() <= nothing { 0.0 } else { high + room },
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::figure::palette::RUN;
+
+    fn panel(label: &str, legend: &[&str]) -> Panel {
+        let axis = Axis::fitting(Text::roman("Time"), "s", [0.0, 1.0]);
+        Panel {
+            label: Text::roman(label),
+            legend: legend.iter().map(|words| (Sample::Line(RUN), Text::roman(*words))).collect(),
+            x: axis.clone(),
+            y: axis,
+            marks: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn an_axis_has_room_but_not_below_zero() {
+        assert_eq!(with_room(Some([0.0, 2.0])), [0.0, 2.1]);
+        assert_eq!(with_room(Some([-2.0, 0.0])), [-2.1, 0.0]);
+        assert_eq!(with_room(Some([-1.0, 1.0])), [-1.1, 1.1]);
+        assert_eq!(with_room(Some([-1e-9, 2.0]))[0], 0.0);
+        assert_eq!(with_room(Some([0.0, 0.0])), [0.0, 1.0]);
+        assert_eq!(with_room(None), [0.0, 1.0]);
+        let [low, high] = with_room(Some([13.7, 13.7 + 1e-9]));
+        assert!(low < 13.7 && high > 13.7 && high - low > 0.1, "{low} {high}");
+    }
+
+    #[test]
+    fn what_is_not_finite_has_no_part_in_a_range() {
+        assert_eq!(range_of([f64::NAN, 3.0, f64::INFINITY, -1.0]), Some([-1.0, 3.0]));
+        assert_eq!(range_of([f64::NAN]), None);
+    }
+
+    #[test]
+    fn a_legend_has_as_many_lines_as_it_needs() {
+        let words = ["kinetic", "potential", "elastic", "dissipated", "drive work", "load work"];
+        let panel = panel("a run", &words);
+        for (room, lines) in [(1000.0, 1), (360.0, 2), (215.0, 3), (10.0, 7)] {
+            assert_eq!(panel.header_lines(room), lines, "{room}");
+        }
+        for line in panel.legend_lines(215.0) {
+            assert!(line.iter().map(entry_width).sum::<f64>() <= 215.0);
+        }
+        assert_eq!(self::panel("", &[]).header_lines(100.0), 0);
+        assert_eq!(self::panel("", &["kinetic"]).header_lines(100.0), 1);
+        assert_eq!(self::panel("a run", &[]).header_lines(1.0), 1);
+    }
+
+    #[test]
+    fn bars_that_touch_become_one_and_none_is_lost() {
+        let mut panel = panel("", &[]);
+        (panel.x.range, panel.y.range) = ([0.0, 100.0], [0.5, -0.5]);
+        // A frame of 100 pt: a second is a point.
+        let frame = Frame { corner: [0.0, 0.0], size: [100.0, 10.0] };
+        let bars = vec![[10.0, 10.0], [20.0, 25.0], [25.0, 30.0], [40.0, 40.001]];
+        panel.marks = vec![Mark::Bars(bars, 0, "#000")];
+        let mut svg = Svg::new([40.0, 5.0], "", "");
+        panel.draw_mark(&mut svg, frame, &panel.marks[0]);
+        let text = svg.finish();
+        for part in ["M10,1.8H10.2V", "M20,1.8H30V", "M40,1.8H40.2V"] {
+            assert!(text.contains(part), "{text}");
+        }
+        assert_eq!(text.matches('Z').count(), 3);
+    }
 }

@@ -99,8 +99,8 @@ impl Sheet {
                 panel.draw(svg, frame, self.words(row, column), layout.left[column] - TITLE_DROP);
                 let line = top - HEADER_GAP;
                 panel.draw_label(svg, [x, line]);
-                let legend = if layout.headers[row] > 1 { line - HEADER } else { line };
-                panel.draw_legend(svg, [x + layout.frame, legend]);
+                let first = line - HEADER * layout.headers[row].saturating_sub(1) as f64;
+                panel.draw_legend(svg, [x + layout.frame, first], layout.frame, HEADER);
             }
             x += layout.frame + layout.right;
         }
@@ -125,7 +125,11 @@ impl Sheet {
         let panels = self.rows.iter().flatten().flatten();
         let right = panels.map(|panel| 0.5 * panel.x_label_width(guess)).fold(RIGHT, f64::max);
         let frame = (width - left.iter().sum::<f64>()) / columns.max(1) as f64 - right;
-        let headers = self.rows.iter().map(|row| header_lines(row, frame)).collect();
+        let lines = |row: &Vec<Option<Panel>>| {
+            let lines = row.iter().flatten().map(|panel| panel.header_lines(frame));
+            lines.max().unwrap_or(0)
+        };
+        let headers = self.rows.iter().map(lines).collect();
         Layout { left, right, frame, heights: heights(frame), headers }
     }
 
@@ -181,19 +185,50 @@ impl Sheet {
     }
 }
 
-/// One line if label and legend fit beside each other, else two.
-fn header_lines(row: &[Option<Panel>], frame: f64) -> usize {
-    let panels = || row.iter().flatten();
-    let wide = |panel: &Panel| {
-        let label = panel.label.width(SMALL_TYPE);
-        !panel.legend.is_empty() && label > 0.0 && label + panel.legend_width() > frame
-    };
-    let none = |panel: &Panel| panel.legend.is_empty() && panel.label.is_empty();
-    if panels().any(wide) {
-        2
-    } else if panels().all(none) {
-        0
-    } else {
-        1
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::figure::panel::Axis;
+
+    fn panel(title: &str) -> Option<Panel> {
+        Some(Panel {
+            label: Text::roman("a run"),
+            legend: Vec::new(),
+            x: Axis::fitting(Text::roman("Across"), "s", [0.0, 1.0]),
+            y: Axis::fitting(Text::roman(title), "N", [0.0, 1000.0]),
+            marks: Vec::new(),
+        })
+    }
+
+    fn draw(rows: Vec<Vec<Option<Panel>>>, shared_x: bool) -> String {
+        let heights = vec![Height::Points(80.0); rows.len()];
+        let sheet = Sheet { width: SINGLE_COLUMN, rows, heights, shared_x };
+        let (svg, size) = sheet.draw("Title", "Description");
+        assert_eq!(size[0], SINGLE_COLUMN);
+        svg
+    }
+
+    fn count(svg: &str, words: &str) -> usize {
+        svg.matches(words).count()
+    }
+
+    #[test]
+    fn a_stack_has_its_titles_once_and_labels_below() {
+        let svg = draw(vec![vec![panel("Up")], vec![panel("Up")], vec![panel("Up")]], true);
+        assert_eq!((count(&svg, ">Across (s)<"), count(&svg, ">Up (kN)<")), (1, 1));
+        assert_eq!((count(&svg, ">0.2<"), count(&svg, ">0.5<")), (1, 3));
+        let svg = draw(vec![vec![panel("Up")], vec![panel("Other")]], true);
+        assert_eq!((count(&svg, ">Up (kN)<"), count(&svg, ">Other (kN)<")), (1, 1));
+    }
+
+    #[test]
+    fn a_grid_with_gaps_titles_every_row_and_column() {
+        let svg = draw(vec![vec![panel("Up"), None], vec![panel("Up"), panel("Up")]], false);
+        assert_eq!((count(&svg, ">Across (s)<"), count(&svg, ">Up (kN)<")), (2, 2));
+    }
+
+    #[test]
+    fn a_sheet_without_panels_is_still_a_picture() {
+        assert!(draw(Vec::new(), true).ends_with("</svg>\n"));
     }
 }

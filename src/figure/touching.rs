@@ -10,19 +10,17 @@ use super::Error;
 use super::decimate::Point;
 use super::runs::Run;
 use crate::record::Dimension;
-use crate::run::{Contact, EventKind, Peak};
+use crate::run::{Contact, Event, EventKind, Peak};
 
 /// Samples within a contact below which its course between them is unknown.
 const KNOWN: usize = 3;
 /// Steps in which a contact's depth is passed at its largest rate, at least.
-const STEPS_OF_DEPTH: f64 = 16.0;
+const STEPS_OF_DEPTH: f64 = 20.0;
 /// Steps in which the radial clearance is passed in flight, at least.
 const STEPS_OF_CLEARANCE: f64 = 60.0;
-/// Share of a step within which states are close enough.
-const ALREADY_CLOSE: f64 = 0.3;
-/// Fewest parts into which the time between two states is cut, where it is cut.
-const FEWEST: f64 = 8.0;
-/// Most of them.
+/// Steps in which the largest rate is lost or won, at least.
+const STEPS_OF_RATE: f64 = 20.0;
+/// Most parts into which the time between two states is cut.
 const MOST: f64 = 32.0;
 
 /// State of a clearance at one time.
@@ -84,7 +82,8 @@ pub(super) fn history(run: &Run, clearance: usize) -> Result<Vec<Moment>, Error>
     };
     let radial = run.radial_clearance(clearance)?.unwrap_or(f64::NAN);
     let in_flight = |states: Vec<Moment>| smooth(&states, radial, radial / STEPS_OF_CLEARANCE, &[]);
-    let peaks: Vec<Peak> = peaks(run, clearance).copied().collect();
+    let mut peaks: Vec<Peak> = peaks(run, clearance).copied().collect();
+    peaks.sort_by(|a, b| a.time.total_cmp(&b.time));
     let mut moments = Vec::with_capacity(run.times.len());
     let mut next = 0;
     let mut left: Option<Moment> = None;
@@ -123,24 +122,24 @@ fn zero(time: f64, rate: f64) -> Moment {
 }
 
 fn end_rate(run: &Run, contact: &Contact) -> f64 {
-    let ends = |event: &&crate::run::Event| {
+    let ends = |event: &&Event| {
         event.clearance == contact.clearance
             && event.kind == EventKind::ContactEnds
             && event.time == contact.end
     };
-    run.events.iter().find(ends).map_or(f64::NAN, |event| event.rate)
+    let from = run.events.partition_point(|event| event.time < contact.end);
+    let mut same = run.events[from..].iter().take_while(|event| event.time <= contact.end);
+    same.find(ends).map_or(f64::NAN, |event| event.rate)
 }
 
 /// Local maxima of the force in a contact, its largest among them, in order of time.
 fn peaks_of(contact: &Contact, peaks: &[Peak]) -> Vec<Point> {
     let end = if contact.end.is_nan() { f64::INFINITY } else { contact.end };
-    let within = |time: f64| contact.begin < time && time < end;
-    let mut points: Vec<Point> = peaks
-        .iter()
-        .map(|peak| [peak.time, peak.force])
-        .chain([[contact.peak_time, contact.peak_force]])
-        .filter(|point| within(point[0]))
-        .collect();
+    let peaks = within(peaks, contact.begin, end, |peak| peak.time);
+    let mut points: Vec<Point> = peaks.iter().map(|peak| [peak.time, peak.force]).collect();
+    if contact.begin < contact.peak_time && contact.peak_time < end {
+        points.push([contact.peak_time, contact.peak_force]);
+    }
     points.sort_by(|a, b| a[0].total_cmp(&b[0]));
     points
 }
@@ -152,24 +151,26 @@ fn outline(contact: &Contact, begin: Moment, end: Moment) -> [Moment; 3] {
     [begin, Moment { time, depth, rate: 0.0, force }, end]
 }
 
-/// Puts states between others, so many that none is farther than `step` (m) from the next, and
-/// eight at least where the path turns.
+/// Puts states between others, so many that from none to the next the penetration changes by more
+/// than `step` (m), nor its rate by more than a share of the largest.
 fn smooth(states: &[Moment], radial: f64, step: f64, peaks: &[Point]) -> Vec<Moment> {
     let force = Monotone::through(states, peaks);
+    let largest = states.iter().map(|state| state.rate.abs()).fold(0.0, f64::max);
     let mut moments = Vec::with_capacity(states.len());
     for pair in states.windows(2) {
         let [from, to] = [pair[0], pair[1]];
         moments.push(from);
         let way = from.rate.abs().max(to.rate.abs()) * (to.time - from.time);
-        if !(way > ALREADY_CLOSE * step) {
+        let turn = (to.rate - from.rate).abs() / largest * STEPS_OF_RATE;
+        let parts = (way / step).max(turn).ceil();
+        if !(parts >= 2.0 && step > 0.0) {
             continue;
         }
-        let parts = (way / step).clamp(FEWEST, MOST) as usize;
+        let parts = parts.min(MOST) as usize;
         let part = (to.time - from.time) / parts as f64;
-        let even = (1..parts).map(|k| from.time + part * k as f64);
-        let tips = peaks.iter().map(|peak| peak[0]);
-        let tips = tips.filter(|time| from.time < *time && *time < to.time);
-        let mut times: Vec<f64> = even.chain(tips).collect();
+        let mut times: Vec<f64> = (1..parts).map(|k| from.time + part * k as f64).collect();
+        let tips = within(peaks, from.time, to.time, |peak| peak[0]);
+        times.extend(tips.iter().map(|peak| peak[0]));
         times.sort_by(f64::total_cmp);
         times.dedup();
         moments.extend(times.into_iter().map(|time| {
@@ -179,6 +180,13 @@ fn smooth(states: &[Moment], radial: f64, step: f64, peaks: &[Point]) -> Vec<Mom
     }
     moments.extend(states.last());
     moments
+}
+
+/// Those of some things in order of time that lie between two times.
+fn within<T>(things: &[T], from: f64, to: f64, time: impl Fn(&T) -> f64) -> &[T] {
+    let first = things.partition_point(|thing| time(thing) <= from);
+    let last = things.partition_point(|thing| time(thing) < to).max(first);
+    &things[first..last]
 }
 
 /// Penetration (m) and its rate (m/s) between two states: the square of the eccentricity is a cubic.
