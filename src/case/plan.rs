@@ -11,7 +11,7 @@ const MOST_SAMPLES: f64 = 1e8;
 const SMALLEST_RELATIVE_TOLERANCE: f64 = 1e-15;
 
 /// Smallest tolerance of the engine that computes with 71 digits; it needs some to spare
-/// (NUMERICS.md).
+/// (docs/numerics.md).
 const SMALLEST_REFERENCE_TOLERANCE: f64 = 1e-64;
 
 /// How a case is run: keys `run` and `solver`.

@@ -5,7 +5,7 @@
 //! ```
 //!
 //! [`Ida`] is safe to use: what is unsafe is in `ffi.rs`. What its settings are, and why, is
-//! measured in NUMERICS.md; the ones that let a run at tolerances of 1e-12 and 1e-20 finish are the
+//! measured in docs/numerics.md; the ones that let a run at tolerances of 1e-12 and 1e-20 finish are the
 //! fifty error-test failures a step may have, λ out of every norm, and the small first step after
 //! each restart.
 //!
