@@ -58,6 +58,17 @@ need_python() {
         --requirement scripts/requirements.txt </dev/null >&2
 }
 
+# Node and the driver of the browser tests, in tests/browser.
+need_browser_driver() {
+    command -v node >/dev/null && command -v npm >/dev/null || need_packages nodejs npm
+    (
+        cd tests/browser
+        npm ls --silent >/dev/null 2>&1 && exit
+        echo "setup: installing into tests/browser/node_modules: playwright-core" >&2
+        npm ci --silent --no-audit --no-fund </dev/null >&2
+    )
+}
+
 # Whether .venv holds each package in the version wanted.
 python_is_ready() {
     [ -x .venv/bin/python ] && .venv/bin/python - 2>/dev/null <<'PYTHON'

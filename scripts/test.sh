@@ -2,9 +2,10 @@
 # Checks everything: format, lints, documentation, all tests. Sets up what that needs.
 source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
 
-need_packages "${BUILD_PACKAGES[@]}" hdf5-tools netcdf-bin octave octave-netcdf python3-venv
+need_packages "${BUILD_PACKAGES[@]}" hdf5-tools netcdf-bin octave octave-netcdf python3-venv chromium
 need_rust rustfmt clippy
 need_python
+need_browser_driver
 
 # The tests run even where a check before them complains, and are the last to speak.
 failed=()

@@ -20,6 +20,8 @@ pub mod case;
 pub mod simulate;
 pub mod certify;
 pub mod post;
+pub mod export;
 pub mod compare;
 pub mod figure;
+pub mod report;
 pub mod cli;

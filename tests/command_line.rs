@@ -106,7 +106,12 @@ fn every_command_explains_itself() {
         assert!(help.out.contains(&format!("Usage: freeplay {command}")), "{}", help.out);
         assert!(help.errors.is_empty());
         let lines: Vec<&str> = help.out.lines().collect();
-        for option in lines.windows(2).filter(|pair| pair[0].trim_start().starts_with('-')) {
+        let is_option = |line: &str| {
+            let line = line.trim_start();
+            // "- csv: …" is a value that an option can have
+            line.starts_with('-') && !line.starts_with("- ")
+        };
+        for option in lines.windows(2).filter(|pair| is_option(pair[0])) {
             // beside the option, or on the next line
             let beside = option[0].trim_start().split("  ").count() > 1;
             let below = option[1].starts_with("        ");

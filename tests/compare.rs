@@ -218,6 +218,20 @@ fn a_csv_file_has_the_digits_that_it_is_written_with() {
 }
 
 #[test]
+fn angles_that_look_like_degrees_and_times_that_stand_twice_are_told() {
+    let trial = Trial::new();
+    let reference = trial.run("four-bar-a", "reference.h5", &["run.duration=0.001"]);
+    // the coupler starts at 0.698 rad
+    let theirs = trial.write("theirs.csv", "t,angle.coupler\n0,39.97\n0,39.97\n1e-4,39.44\n");
+    let json = trial.json(&theirs, &reference, &[]);
+    let notes = json["notes"].to_string();
+    assert!(notes.contains("in degrees") && notes.contains("1 times more than once"), "{notes}");
+    let json = trial.json(&theirs, &reference, &["--map", "angle.coupler[deg]=angle.coupler"]);
+    assert!(number(&json["gate"]["fewest"]["digits"]) > 3.0, "{}", json["gate"]);
+    assert!(!json["notes"].to_string().contains("in degrees"));
+}
+
+#[test]
 fn a_matlab_file_is_graded_at_its_own_times() {
     let trial = Trial::new();
     let reference = trial.run("four-bar-a", "reference.h5", &["run.duration=0.001"]);

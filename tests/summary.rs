@@ -4,57 +4,17 @@
 
 #[expect(dead_code, reason = "what files must hold is another test's matter")]
 mod recorded;
+mod written;
 
-use freeplay::case::{Case, Changes};
 use freeplay::post::{Basis, Extreme, Reference, Summary};
-use freeplay::record::{Ending, Outcome, ResultFile, Writer};
-use freeplay::simulate::{self, Simulation};
 use recorded::Recorded;
 use serde_json::Value;
-use std::ops::ControlFlow;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::path::Path;
+use std::process::Output;
+use written::{Run, alone};
 
-/// Held while this process writes a result file or starts another process: the child would
-/// inherit the open file, and with it the lock that keeps readers away.
-static ALONE: Mutex<()> = Mutex::new(());
-
-fn alone() -> MutexGuard<'static, ()> {
-    ALONE.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
-/// A case as run, with keys set, in a folder that goes with this.
-struct Run {
-    folder: tempfile::TempDir,
-    path: PathBuf,
-}
-
-impl Run {
-    fn of(case: &str, set: &[&str]) -> Run {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("run.h5");
-        let cases = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases");
-        let set = set.iter().map(|change| change.parse().unwrap()).collect();
-        let case = cases.join(format!("{case}.toml"));
-        let case = Case::read(&case, &Changes { set, ideal: false }).unwrap();
-        let simulation = Simulation::new(&case).unwrap();
-        let header = simulate::header(&case, simulation.mechanism(), String::new());
-        let _alone = alone();
-        let mut writer = Writer::create(&path, header, false).unwrap();
-        let (statistics, ran) = simulation.run(&mut writer, &mut |_| ControlFlow::Continue(()));
-        ran.unwrap();
-        let (counts, rulings) = (statistics.engine, statistics.rulings);
-        let finished_utc = String::new();
-        writer
-            .finish(Ending { outcome: Outcome::Complete, counts, rulings, finished_utc })
-            .unwrap();
-        Run { folder, path }
-    }
-
-    fn summary(&self) -> Summary {
-        Summary::of(&ResultFile::open(&self.path).unwrap(), None).unwrap()
-    }
+fn summary_of(run: &Run) -> Summary {
+    Summary::of(&run.file(), None).unwrap()
 }
 
 fn largest(summary: &Summary, column: &str) -> Extreme {
@@ -84,7 +44,7 @@ const IDEAL: [(&str, bool, f64, f64, f64); 9] = [
 fn the_ideal_extremes_are_true_however_coarse_the_samples() {
     for interval in ["1e-5", "3e-3", "0.0071"] {
         let run = Run::of("four-bar-ideal", &[&format!("run.sample_interval={interval}")]);
-        let summary = run.summary();
+        let summary = summary_of(&run);
         let turning = summary.turning.as_ref().unwrap();
         for (column, is_largest, exact, angle, known) in IDEAL {
             let of = if is_largest { largest } else { smallest };
@@ -100,7 +60,7 @@ fn the_ideal_extremes_are_true_however_coarse_the_samples() {
 
 #[test]
 fn every_whole_revolution_of_the_ideal_mechanism_is_like_the_first() {
-    let summary = Run::of("four-bar-ideal", &["run.duration=0.0535"]).summary();
+    let summary = summary_of(&Run::of("four-bar-ideal", &["run.duration=0.0535"]));
     for (quantity, tally) in &summary.run.quantities {
         assert_eq!(tally.revolutions.len(), 5);
         let [first, .., last] = &tally.revolutions[..] else { panic!("five revolutions") };
@@ -125,7 +85,7 @@ const PEAKS_OF_A: [f64; 2] = [13_321.945_353_778_703, 7_106.440_236_066_858];
 fn the_force_of_a_joint_with_clearance_peaks_between_the_samples() {
     // every tenth of a millisecond, while the contacts take 40 µs or more
     let summary =
-        Run::of("four-bar-a", &["run.duration=0.024", "run.sample_interval=1e-4"]).summary();
+        summary_of(&Run::of("four-bar-a", &["run.duration=0.024", "run.sample_interval=1e-4"]));
     let force = summary.run.of("joint_force.A").unwrap();
     for (revolution, exact) in force.revolutions.iter().zip(PEAKS_OF_A) {
         let found = revolution.largest.unwrap();
@@ -138,7 +98,7 @@ fn the_force_of_a_joint_with_clearance_peaks_between_the_samples() {
 
 #[test]
 fn the_largest_ratio_of_case_a_is_that_of_exact_arithmetic() {
-    let summary = Run::of("four-bar-a", &[]).summary();
+    let summary = summary_of(&Run::of("four-bar-a", &[]));
     assert!(matches!(summary.reference, Ok(Reference::Ideal(_))));
     let (quantity, tally) = summary
         .run
@@ -158,8 +118,8 @@ fn the_largest_ratio_of_case_a_is_that_of_exact_arithmetic() {
 #[test]
 fn contacts_flights_and_dissipation_account_for_the_run() {
     let run = Run::of("four-bar-c", &["run.duration=0.018"]);
-    let summary = run.summary();
-    let file = ResultFile::open(&run.path).unwrap();
+    let summary = summary_of(&run);
+    let file = run.file();
     let contacts = file.contacts().unwrap();
     let mut dissipated = 0.0;
     for (k, joint) in summary.contacts.iter().enumerate() {
@@ -182,8 +142,8 @@ fn contacts_flights_and_dissipation_account_for_the_run() {
 #[test]
 fn interpolated_extremes_of_a_run_with_contacts_are_as_good_as_they_say() {
     let short = "run.duration=0.006";
-    let coarse = Run::of("four-bar-a", &[short, "run.sample_interval=5e-6"]).summary();
-    let fine = Run::of("four-bar-a", &[short, "run.sample_interval=1e-7"]).summary();
+    let coarse = summary_of(&Run::of("four-bar-a", &[short, "run.sample_interval=5e-6"]));
+    let fine = summary_of(&Run::of("four-bar-a", &[short, "run.sample_interval=1e-7"]));
     let mut interpolated = 0;
     for (quantity, tally) in &coarse.run.quantities {
         let name = quantity.name(&coarse.run.names);
@@ -204,7 +164,7 @@ fn interpolated_extremes_of_a_run_with_contacts_are_as_good_as_they_say() {
 
 #[test]
 fn a_journal_that_circles_is_in_permanent_contact_and_has_no_revolutions() {
-    let summary = Run::of("journal-in-bearing", &[]).summary();
+    let summary = summary_of(&Run::of("journal-in-bearing", &[]));
     assert!(summary.turning.is_none());
     // its ideal mechanism cannot start where the case says
     assert!(summary.reference.is_err());
@@ -225,7 +185,8 @@ fn a_journal_that_circles_is_in_permanent_contact_and_has_no_revolutions() {
 fn the_force_in_the_pivot_of_a_pendulum_is_interpolated_to_what_it_says() {
     // m g (1 + 2 m l²/J) at the bottom
     for (interval, close) in [("1e-3", 1e-9), ("1e-2", 1e-4), ("5e-2", 2e-2)] {
-        let summary = Run::of("pendulum", &[&format!("run.sample_interval={interval}")]).summary();
+        let summary =
+            summary_of(&Run::of("pendulum", &[&format!("run.sample_interval={interval}")]));
         let found = largest(&summary, "joint_force.O");
         let error = (found.value - 12.2625).abs();
         assert_eq!(found.basis, Basis::Interpolated);
@@ -240,7 +201,7 @@ fn the_force_in_the_pivot_of_a_pendulum_is_interpolated_to_what_it_says() {
 fn a_run_is_held_against_another_by_the_names_of_its_columns() {
     let short = "run.duration=0.003";
     let (c, a) = (Run::of("four-bar-c", &[short]), Run::of("four-bar-a", &[short]));
-    let (c, a) = (ResultFile::open(&c.path).unwrap(), ResultFile::open(&a.path).unwrap());
+    let (c, a) = (c.file(), a.file());
     let summary = Summary::of(&c, Some(&a)).unwrap();
     let json = summary.to_json();
     assert_eq!(json["against"]["case_name"], "four-bar-a");
@@ -254,15 +215,13 @@ fn a_run_is_held_against_another_by_the_names_of_its_columns() {
     assert!((ours / theirs - ratio).abs() < 1e-15 * ratio);
     assert_eq!(theirs, largest(&Summary::of(&a, None).unwrap(), "joint_force.B").value);
     let pendulum = Run::of("pendulum", &["run.duration=0.01"]);
-    let pendulum = ResultFile::open(&pendulum.path).unwrap();
+    let pendulum = pendulum.file();
     let refused = Summary::of(&c, Some(&pendulum)).unwrap_err();
     assert!(refused.to_string().contains("nothing in common"), "{refused}");
 }
 
 fn freeplay(arguments: &[&str], file: &Path) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_freeplay"));
-    let _alone = alone();
-    command.args(arguments).arg(file).output().unwrap()
+    written::freeplay(&[arguments, &[file.to_str().unwrap()]].concat())
 }
 
 #[test]
@@ -296,12 +255,12 @@ fn the_command_prints_a_table_or_json_with_units() {
 #[test]
 fn what_is_no_result_file_is_refused_with_exit_code_2() {
     let run = Run::of("pendulum", &["run.duration=0.01"]);
-    let text = run.folder.path().join("text.h5");
+    let text = run.beside("text.h5");
     std::fs::write(&text, "no HDF5").unwrap();
-    let half = run.folder.path().join("half.h5");
+    let half = run.beside("half.h5");
     let whole = std::fs::read(&run.path).unwrap();
     std::fs::write(&half, &whole[..whole.len() / 2]).unwrap();
-    let missing = run.folder.path().join("missing.h5");
+    let missing = run.beside("missing.h5");
     for (file, words) in [(&text, "not an HDF5 file"), (&half, "cut short"), (&missing, "open")] {
         let refused = freeplay(&["summary"], file);
         let told = String::from_utf8(refused.stderr).unwrap();

@@ -10,8 +10,8 @@ const MOST_SAMPLES: f64 = 1e8;
 /// Smallest relative tolerance of an engine that computes in doubles.
 const SMALLEST_RELATIVE_TOLERANCE: f64 = 1e-15;
 
-/// Smallest tolerance of the engine that computes with 71 digits; it needs some to spare
-/// (docs/numerics.md).
+/// Smallest tolerance of the engine that computes with 71 digits; extrapolation needs some to
+/// spare.
 const SMALLEST_REFERENCE_TOLERANCE: f64 = 1e-64;
 
 /// How a case is run: keys `run` and `solver`.

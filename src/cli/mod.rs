@@ -3,8 +3,10 @@
 mod certify;
 mod check;
 mod compare;
+mod export;
 mod info;
 mod plot;
+mod report;
 mod run;
 mod signals;
 mod summary;
@@ -39,6 +41,10 @@ enum Command {
     Compare(compare::Arguments),
     /// Draw the figures of result files, as journals print them.
     Plot(plot::Arguments),
+    /// Write a result file for other tools: CSV, Parquet, OpenMBV.
+    Export(export::Arguments),
+    /// Write a page on one or several runs: summary, charts, the mechanism in motion.
+    Report(report::Arguments),
 }
 
 /// A case file, and what the command line changes in it.
@@ -135,6 +141,8 @@ pub fn main() -> ExitCode {
         Command::Summary(arguments) => summary::summary(&arguments),
         Command::Compare(arguments) => compare::compare(&arguments),
         Command::Plot(arguments) => plot::plot(&arguments),
+        Command::Export(arguments) => export::export(&arguments),
+        Command::Report(arguments) => report::report(&arguments),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

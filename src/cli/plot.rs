@@ -2,6 +2,7 @@
 
 use super::Failure;
 use crate::figure::{self, Figure, Format, Options, Over};
+use crate::model::did_you_mean;
 use crate::record::ResultFile;
 use std::fs::{self, OpenOptions};
 use std::io::{self, Write};
@@ -19,6 +20,9 @@ pub struct Arguments {
     /// Kind of files; several with commas between.
     #[arg(long, value_enum, value_delimiter = ',', default_value = "svg")]
     format: Vec<FormatName>,
+    /// Write these figures only: names with commas between, "force-A" or all of a kind, "force".
+    #[arg(long, value_name = "NAME", value_delimiter = ',')]
+    only: Vec<String>,
     /// What histories are drawn over.
     #[arg(long, value_enum, default_value = "time")]
     over: OverName,
@@ -74,6 +78,15 @@ fn width(text: &str) -> Result<f64, String> {
     }
 }
 
+/// A figure was asked for that the files do not give.
+#[derive(Debug, thiserror::Error)]
+#[error("there is no figure \"{name}\"{hint}; there are {known}")]
+struct NoFigure {
+    name: String,
+    hint: String,
+    known: String,
+}
+
 /// Why figures could not be written.
 #[derive(Debug, thiserror::Error)]
 enum PlotError {
@@ -90,12 +103,25 @@ pub(super) fn plot(arguments: &Arguments) -> Result<(), Failure> {
     let files = arguments.files.iter().map(|path| ResultFile::open(path));
     let files = files.collect::<Result<Vec<_>, _>>().map_err(Failure::input)?;
     let figures = figure::draw(files, &options(arguments)).map_err(Failure::input)?;
+    let figures = chosen(figures, &arguments.only).map_err(Failure::input)?;
     let formats = formats(arguments);
     let written = write(&figures, &formats, &arguments.output, arguments.force);
     let written = written.map_err(Failure::output)?;
     let (count, folder) = (figures.len(), arguments.output.display());
     super::print(format_args!("{folder}: {count} figures, {written} files\n"));
     Ok(())
+}
+
+/// The figures that are asked for by name or kind; all if none is.
+fn chosen(figures: Vec<Figure>, only: &[String]) -> Result<Vec<Figure>, NoFigure> {
+    let is = |figure: &Figure, name: &String| figure.name == *name || figure.kind == name;
+    if let Some(name) = only.iter().find(|name| !figures.iter().any(|figure| is(figure, name))) {
+        let known: Vec<&str> = figures.iter().map(|figure| figure.name.as_str()).collect();
+        let hint = did_you_mean(name, known.iter().copied());
+        return Err(NoFigure { name: name.clone(), hint, known: known.join(", ") });
+    }
+    let wanted = |figure: &Figure| only.is_empty() || only.iter().any(|name| is(figure, name));
+    Ok(figures.into_iter().filter(wanted).collect())
 }
 
 fn options(arguments: &Arguments) -> Options {

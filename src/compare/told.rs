@@ -6,7 +6,8 @@ use super::grade::{Grade, Hold};
 use super::mapping::How;
 use super::reference::Way;
 use crate::model::in_brackets;
-use comfy_table::{Cell, CellAlignment, Table, presets};
+use crate::post::table;
+use comfy_table::Table;
 use std::fmt::{self, Display, Formatter};
 use std::ops::Range;
 
@@ -39,6 +40,11 @@ pub(super) fn seconds(time: f64) -> String {
     }
 }
 
+/// A number of things, `1 column` or `2 columns`.
+fn counted(number: usize, thing: &str) -> String {
+    format!("{number} {thing}{}", if number == 1 { "" } else { "s" })
+}
+
 impl Grade {
     /// The digits, with a sign where there may be more.
     fn told(&self) -> String {
@@ -69,7 +75,11 @@ impl Display for Comparison {
             }
             Identity::None => {}
         }
-        writeln!(f, "\nFewest digits of agreement, from the row before:\n{}", self.digits_table())?;
+        writeln!(
+            f,
+            "\nFewest digits of agreement, from the row before:\n{}",
+            self.digits_table().trim_fmt()
+        )?;
         self.hold_lines(f)?;
         self.least_line(f)?;
         self.event_lines(f)?;
@@ -93,9 +103,9 @@ impl Comparison {
         let (first, last) = (times.first().copied(), times.last().copied());
         let span = |time: Option<f64>| time.map_or(String::new(), seconds);
         let mut line = format!(
-            "{} samples of {} columns, {} s to {} s; ",
-            times.len(),
-            self.columns.len(),
+            "{} of {}, {} s to {} s; ",
+            counted(times.len(), "sample"),
+            counted(self.columns.len(), "column"),
             span(first),
             span(last)
         );
@@ -116,25 +126,21 @@ impl Comparison {
     /// Digits over time: for each stretch, the fewest.
     fn digits_table(&self) -> Table {
         let series = &self.series;
-        let mut table = Table::new();
-        table.load_style(presets::ASCII_BORDERS_ONLY_CONDENSED);
         let quantities = series.quantities.iter();
         let titles = quantities.clone().map(|graded| match graded.in_gate {
             true => graded.quantity.title().to_owned(),
             false => format!("({})", graded.quantity.title()),
         });
-        table.set_header(["until (s)".to_owned(), "gate".to_owned()].into_iter().chain(titles));
-        for rows in stretches(&series.times) {
-            let mut cells = vec![seconds(series.times[rows.end - 1])];
+        let heads = ["until (s)".to_owned(), "gate".to_owned()].into_iter().chain(titles);
+        let row = |rows: Range<usize>| {
             let grades = std::iter::once(&series.gate).chain(quantities.clone().map(|q| &q.grades));
-            cells.extend(grades.map(|grades| {
+            let fewest = grades.map(|grades| {
                 let worst = grades[rows.clone()].iter().copied().reduce(Grade::worse);
                 worst.map_or(String::new(), |grade| grade.told())
-            }));
-            let right = |cell: String| Cell::new(cell).set_alignment(CellAlignment::Right);
-            table.add_row(cells.into_iter().map(right));
-        }
-        table
+            });
+            std::iter::once(seconds(series.times[rows.end - 1])).chain(fewest).collect()
+        };
+        table(heads.collect(), stretches(&series.times).into_iter().map(row).collect(), 0)
     }
 
     fn hold_lines(&self, f: &mut Formatter<'_>) -> fmt::Result {
@@ -177,33 +183,19 @@ impl Comparison {
         if events.rows.is_empty() {
             return writeln!(f, "\nNeither has events up to there.");
         }
-        let mut table = Table::new();
-        table.load_style(presets::ASCII_BORDERS_ONLY_CONDENSED);
-        table.set_header([
+        let first = events.first_unmatched();
+        // matches behind that are as often chance as not
+        let until = first.map_or(f64::INFINITY, |first| first.time);
+        let heads = [
             "events",
             "in both",
             "only theirs",
             "only reference",
             "largest difference (s)",
             "at (s)",
-        ]);
-        let first = events.first_unmatched();
-        // matches behind that are as often chance as not
-        let until = first.map_or(f64::INFINITY, |first| first.time);
-        for row in &events.rows {
-            let before = row.pairs.iter().take_while(|pair| pair.time < until);
-            let worst = before.max_by(|a, b| a.later().abs().total_cmp(&b.later().abs()));
-            let name = format!("{} {}", self.clearance(row), row.kind.replace('_', " "));
-            let numbers = [
-                row.pairs.len().to_string(),
-                row.only_theirs.len().to_string(),
-                row.only_reference.len().to_string(),
-                worst.map_or(String::new(), |pair| format!("{:.1e}", pair.later().abs())),
-                worst.map_or(String::new(), |pair| seconds(pair.time)),
-            ];
-            let right = |cell: String| Cell::new(cell).set_alignment(CellAlignment::Right);
-            table.add_row(std::iter::once(Cell::new(name)).chain(numbers.into_iter().map(right)));
-        }
+        ];
+        let rows = events.rows.iter().map(|row| self.event_cells(row, until)).collect();
+        let table = table(heads.map(str::to_owned).to_vec(), rows, 1);
         match first {
             None => writeln!(f, "\nEvents, one to one; each has its like:")?,
             Some(first) => writeln!(
@@ -216,11 +208,22 @@ impl Comparison {
                 if first.in_theirs { "theirs" } else { "the reference" }
             )?,
         }
-        writeln!(f, "{table}")
+        writeln!(f, "{}", table.trim_fmt())
     }
 
-    fn clearance(&self, row: &EventRow) -> &str {
-        &self.parts.0.clearances[row.clearance]
+    /// A row of the table of events; differences are those before a time (s).
+    fn event_cells(&self, row: &EventRow, until: f64) -> Vec<String> {
+        let before = row.pairs.iter().take_while(|pair| pair.time < until);
+        let worst = before.max_by(|a, b| a.later().abs().total_cmp(&b.later().abs()));
+        let clearance = &self.parts.0.clearances[row.clearance];
+        vec![
+            format!("{clearance} {}", row.kind.replace('_', " ")),
+            row.pairs.len().to_string(),
+            row.only_theirs.len().to_string(),
+            row.only_reference.len().to_string(),
+            worst.map_or(String::new(), |pair| format!("{:.1e}", pair.later().abs())),
+            worst.map_or(String::new(), |pair| seconds(pair.time)),
+        ]
     }
 }
 

@@ -1,4 +1,5 @@
-//! Force over penetration in each contact: the area of a loop is what the contact dissipates.
+//! Force over penetration in each contact that begins or ends: the area of a loop is what the
+//! contact dissipates.
 
 use super::decimate::{BREAK, Point};
 use super::grid::by_run_and_joint;
@@ -7,8 +8,9 @@ use super::panel::{Axis, Mark, Panel, Sample, zero_line};
 use super::runs::{Run, Runs};
 use super::svg::Stroke;
 use super::text::Text;
-use super::touching::{contacts, history};
+use super::touching::{began_before, contacts, history};
 use super::{Error, Figures};
+use crate::run::Contact;
 
 /// All contacts.
 const ALL: Stroke = Stroke::solid(SKY, 0.3);
@@ -33,13 +35,15 @@ pub(super) fn draw(runs: &Runs, figures: &mut Figures<'_>) -> Result<(), Error> 
 
 fn loops(run: &Run, clearance: usize) -> Result<Vec<Vec<Point>>, Error> {
     let moments = history(run, clearance)?;
-    let of = |contact: crate::run::Contact| {
+    let of = |contact: Contact| {
         let end = if contact.end.is_nan() { f64::INFINITY } else { contact.end };
         let from = moments.partition_point(|moment| moment.time < contact.begin);
         let until = moments.partition_point(|moment| moment.time <= end);
-        moments[from..until].iter().map(|moment| [moment.depth, moment.force]).collect()
+        moments[from..until.max(from)].iter().map(|moment| [moment.depth, moment.force]).collect()
     };
-    let loops: Vec<Vec<Point>> = contacts(run, clearance).into_iter().map(of).collect();
+    let contacts = contacts(run, clearance).into_iter();
+    let comes_or_goes = |contact: &Contact| run.shows(contact.end) || !began_before(run, contact);
+    let loops: Vec<Vec<Point>> = contacts.filter(comes_or_goes).map(of).collect();
     Ok(loops.into_iter().filter(|points| points.len() > 1).collect())
 }
 

@@ -23,8 +23,7 @@ pub(super) fn draw(runs: &Runs, figures: &mut Figures<'_>) -> Result<(), Error> 
     for run in runs.shown() {
         let mut curves = Vec::new();
         for (dataset, words, stroke) in CURVES {
-            let samples = run.optional_samples(dataset)?;
-            let curve = samples.map(|samples| Curve::of(run, samples.column(0)));
+            let curve = run.optional_column(dataset)?.map(|values| Curve::of(run, values));
             curves.extend(curve.map(|curve| (words, stroke, curve)));
         }
         if !curves.is_empty() {

@@ -94,3 +94,73 @@ pub(super) fn pdf(svg: &str, title: &str) -> Result<Vec<u8>, EncodeError> {
     page.finish();
     document.finish().map_err(|error| EncodeError::Pdf(format!("{error:?}")))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::svg::{Anchor, Svg};
+    use super::super::text::Text;
+    use super::*;
+
+    fn picture(words: &str) -> String {
+        let mut svg = Svg::new([30.0, 10.0], "Title", "Description");
+        let text = Text::roman(words).and_italic("δ").and_subscript("N").and(" −1 µm");
+        svg.text([5.0, 15.0], Anchor::Start, 9.0, &text);
+        svg.finish()
+    }
+
+    /// Pixels of a PNG that are not white, and its width and height.
+    fn dark_pixels(file: &[u8]) -> (usize, [u32; 2]) {
+        let mut reader = png::Decoder::new(std::io::Cursor::new(file)).read_info().unwrap();
+        let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
+        let info = reader.next_frame(&mut pixels).unwrap();
+        let dark = pixels.chunks(3).filter(|pixel| pixel.iter().any(|value| *value < 255)).count();
+        (dark, [info.width, info.height])
+    }
+
+    #[test]
+    fn no_fonts_but_those_in_the_program_are_known() {
+        let names: Vec<String> = tree(&picture("a"))
+            .unwrap()
+            .fontdb()
+            .faces()
+            .map(|face| face.families[0].0.clone())
+            .collect();
+        assert_eq!(names, ["Liberation Sans", "Liberation Sans"]);
+    }
+
+    #[test]
+    fn a_png_has_text_and_300_dots_an_inch() {
+        let file = png(&picture("Force")).unwrap();
+        let (dark, size) = dark_pixels(&file);
+        assert_eq!(size, [354, 118]); // 30 mm by 10 mm
+        let (less, _) = dark_pixels(&png(&picture("")).unwrap());
+        assert!(less > 100 && dark > less + 100, "{dark} {less}");
+        let reader = png::Decoder::new(std::io::Cursor::new(&file)).read_info().unwrap();
+        let dots = reader.info().pixel_dims.unwrap();
+        assert_eq!((dots.xppu, dots.yppu), (11811, 11811));
+    }
+
+    #[test]
+    fn a_pdf_has_the_fonts_it_needs_in_it() {
+        let file = pdf(&picture("Force"), "Title").unwrap();
+        let text = String::from_utf8_lossy(&file);
+        assert!(text.starts_with("%PDF-"));
+        for font in ["LiberationSans", "LiberationSans-Italic"] {
+            assert!(text.contains(font), "{font}");
+        }
+        assert!(!text.contains("CreationDate"));
+    }
+
+    #[test]
+    fn the_same_picture_gives_the_same_bytes() {
+        let picture = picture("Force");
+        assert!(png(&picture).unwrap() == png(&picture).unwrap());
+        assert!(pdf(&picture, "Title").unwrap() == pdf(&picture, "Title").unwrap());
+    }
+
+    #[test]
+    fn what_is_no_svg_is_refused() {
+        assert!(matches!(png("<svg"), Err(EncodeError::Svg(_))));
+        assert!(matches!(pdf("nothing", ""), Err(EncodeError::Svg(_))));
+    }
+}

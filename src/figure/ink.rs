@@ -4,6 +4,8 @@ use super::decimate::{BREAK, Point};
 
 /// Width of the squares in which ink is remembered (pt).
 const CELL: f64 = 0.1;
+/// Distance of the places at which ink is laid and looked for (pt).
+const DENSE: f64 = 0.5 * CELL;
 /// Paths of fewer points are not worth the trouble.
 const FEW: usize = 4000;
 
@@ -60,7 +62,7 @@ impl Ink {
 
     /// Whether a piece of line, both edges included, is on ink everywhere.
     fn covers(&self, from: Point, to: Point) -> bool {
-        let inset = self.half - 0.5 * CELL;
+        let inset = self.half - DENSE;
         [0.0, inset, -inset].iter().all(|aside| {
             along(from, to, *aside).all(|place| {
                 let cell = self.cell(place);
@@ -70,9 +72,9 @@ impl Ink {
     }
 
     fn lay(&mut self, from: Point, to: Point) {
-        let lines = (self.half / CELL).floor() as i32;
+        let lines = (self.half / DENSE).floor() as i32;
         for line in -lines..=lines {
-            for place in along(from, to, CELL * f64::from(line)) {
+            for place in along(from, to, DENSE * f64::from(line)) {
                 let cell = self.cell(place);
                 self.bits[cell / 64] |= 1 << (cell % 64);
             }
@@ -88,13 +90,13 @@ impl Ink {
     }
 }
 
-/// Places on a line beside another one, closer than a square is wide.
+/// Places on a line beside another one, half a square apart at most.
 fn along(from: Point, to: Point, aside: f64) -> impl Iterator<Item = Point> {
     let [x, y] = [to[0] - from[0], to[1] - from[1]];
     let length = x.hypot(y);
     let normal =
         if length > 0.0 { [-y / length * aside, x / length * aside] } else { [aside, 0.0] };
-    let steps = (1.5 * length / CELL).ceil().max(1.0);
+    let steps = (length / DENSE).ceil().max(1.0);
     (0..=steps as usize).map(move |step| {
         let share = step as f64 / steps;
         [from[0] + share * x + normal[0], from[1] + share * y + normal[1]]
@@ -128,11 +130,12 @@ mod tests {
     }
 
     #[test]
-    fn whatever_is_dropped_lies_on_what_is_kept() {
-        let points = turns(400, 0.0001);
-        let kept = without_covered(points.clone(), 0.4);
-        assert!(kept.len() < points.len() / 4, "{}", kept.len());
-        for point in &points {
+    fn what_is_kept_fills_an_area_and_does_not_grow_with_the_path() {
+        // A ring of 4 pt, filled by 400 turns and by 4000.
+        let [few, many] = [(400, 1e-4), (4000, 1e-5)].map(|(count, drift)| turns(count, drift));
+        let kept = without_covered(many.clone(), 0.4);
+        assert!(kept.len() < 2 * without_covered(few, 0.4).len(), "{}", kept.len());
+        for point in many.iter().step_by(97) {
             let near = |other: &Point| (other[0] - point[0]).hypot(other[1] - point[1]) < 0.4;
             assert!(kept.iter().any(near), "{point:?}");
         }

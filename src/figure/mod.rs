@@ -123,6 +123,8 @@ impl Format {
 pub struct Figure {
     /// Name, fit for the stem of a file's name, and different from those of the others.
     pub name: String,
+    /// Its kind: `force` for the forces of all joints.
+    pub kind: &'static str,
     /// What it shows, in words.
     pub title: String,
     /// The picture.
@@ -174,7 +176,7 @@ struct Figures<'a> {
 
 impl Figures<'_> {
     /// Draws a figure on as many pages as it has sheets. `item` is the part it is about.
-    fn add(&mut self, kind: &str, item: Option<&str>, title: &str, sheets: Vec<Sheet>) {
+    fn add(&mut self, kind: &'static str, item: Option<&str>, title: &str, sheets: Vec<Sheet>) {
         let base = match item {
             Some(item) => format!("{kind}-{item}"),
             None => kind.to_owned(),
@@ -189,7 +191,7 @@ impl Figures<'_> {
             let wanted = if pages > 1 { format!("{base}-{}", page + 1) } else { base.clone() };
             let name = self.free_name(wanted);
             let (svg, size) = sheet.draw(title, DESCRIPTION);
-            self.drawn.push(Figure { name, title: title.to_owned(), svg, size });
+            self.drawn.push(Figure { name, kind, title: title.to_owned(), svg, size });
         }
     }
 

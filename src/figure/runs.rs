@@ -105,13 +105,10 @@ impl Run {
         Ok(Samples { table, window: self.window.clone() })
     }
 
-    /// A dataset over time that not every file has.
-    pub fn optional_samples(&self, dataset: &str) -> Result<Option<Samples>, Error> {
-        use crate::record::Error::Missing;
-        match self.samples(dataset) {
-            Err(Error::Record(Missing { .. })) => Ok(None),
-            found => found.map(Some),
-        }
+    /// A single column over time that not every file has.
+    pub fn optional_column(&self, dataset: &str) -> Result<Option<Vec<f64>>, Error> {
+        let column = self.file.over_time(dataset)?;
+        Ok(column.map(|column| column[self.window.clone()].to_vec()))
     }
 
     /// Where the samples are on the horizontal axis (s or rad).

@@ -1,7 +1,7 @@
 //! Where an axis has its ticks, and what stands beside them.
 
 /// Steps of degrees that people count in, and the minor steps between them (deg).
-const DEGREES: [[f64; 2]; 9] = [
+const DEGREES: [[f64; 2]; 8] = [
     [1.0, 0.2],
     [2.0, 0.5],
     [5.0, 1.0],
@@ -10,7 +10,6 @@ const DEGREES: [[f64; 2]; 9] = [
     [45.0, 15.0],
     [90.0, 30.0],
     [180.0, 45.0],
-    [360.0, 90.0],
 ];
 
 /// Ticks of an axis, in the unit of its labels.
@@ -46,9 +45,13 @@ impl Ticks {
 
     /// Ticks at degrees that people count in: 90, 180, 360 and their like.
     pub fn degrees(range: [f64; 2], most: usize) -> Self {
-        let whole_turns = (1..).map(|doubling| 360.0 * f64::from(doubling));
-        let whole_turns = whole_turns.map(|step| [step, step / 4.0]).take(10_000);
-        let mut steps = DEGREES.into_iter().chain(whole_turns);
+        let turns = (0..15).flat_map(|power| {
+            [[1.0, 4.0], [2.0, 4.0], [5.0, 5.0]].map(|[turns, parts]| {
+                let step = 360.0 * turns * 10_f64.powi(power);
+                [step, step / parts]
+            })
+        });
+        let mut steps = DEGREES.into_iter().chain(turns);
         let [step, minor] =
             steps.find(|[step, _]| count(range, *step) <= most.max(2)).unwrap_or([360.0, 90.0]);
         if count(range, step) > 100 || count(range, step) < 2 {

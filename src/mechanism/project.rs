@@ -48,6 +48,10 @@ impl<S: Scalar> Mechanism<S> {
             drift.get_or_insert(error.to_f64());
             // below `good` there is nothing but rounding; no gain means the same
             if error <= good || !(error < last) {
+                if S::CARRIES_DERIVATIVE {
+                    // the value may be there before its derivative is
+                    self.correct(q)?;
+                }
                 break;
             }
             last = error;

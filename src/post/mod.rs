@@ -17,6 +17,7 @@ pub use extremes::{RunExtremes, case_of};
 pub use quantity::Quantity;
 pub use revolutions::Revolutions;
 pub use summary::{Reference, Summary, Turning};
+pub(crate) use table::table;
 pub use tally::{Basis, Extreme, Extremes, Tally, ratio};
 
 use crate::case;

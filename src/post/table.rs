@@ -311,7 +311,7 @@ fn permanent(contacts: &Contacts) -> String {
 }
 
 /// A table whose columns from this one on hold numbers, aligned to the right.
-fn table(heads: Vec<String>, rows: Vec<Vec<String>>, from: usize) -> Table {
+pub(crate) fn table(heads: Vec<String>, rows: Vec<Vec<String>>, from: usize) -> Table {
     let mut table = Table::new();
     table.load_style(NOTHING.header_separator(LineStyle::none().fill('─').junction('─')));
     table.set_header(heads);

@@ -19,6 +19,7 @@ pub use attribute::Attribute;
 pub use error::{Error, LibraryError};
 pub use header::{Ending, Header, Outcome, Series, utc};
 pub use overview::Overview;
+pub(crate) use publish::Draft;
 pub use reader::{ResultFile, Table};
 pub use schema::{DATASETS, Dataset, Dimension, SCHEMA_VERSION, Source, Values, column_name};
 pub use writer::Writer;

@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 /// The output asked for, and the temporary file beside it, which goes with this unless it is
 /// published.
 #[derive(Debug)]
-pub(super) struct Draft {
+pub(crate) struct Draft {
     target: PathBuf,
     temporary: PathBuf,
     force: bool,
@@ -157,15 +157,16 @@ fn temporary_name(name: &OsStr, number: u32) -> OsString {
     temporary
 }
 
-/// `NAME.word.h5` beside `NAME.h5`, and beside a name without that ending.
+/// Endings that stay at the end of a name.
+const ENDINGS: [&str; 5] = ["h5", "csv", "parquet", "ombvx", "ombvh5"];
+
+/// `NAME.word.h5` beside `NAME.h5`, and beside a name without an ending of ours.
 fn beside(path: &Path, word: &str) -> PathBuf {
-    let stem = if path.extension() == Some(OsStr::new("h5")) {
-        path.file_stem()
-    } else {
-        path.file_name()
-    };
+    let ending = path.extension().and_then(OsStr::to_str);
+    let ending = ending.filter(|ending| ENDINGS.contains(ending));
+    let stem = if ending.is_some() { path.file_stem() } else { path.file_name() };
     let mut name = stem.map(OsStr::to_owned).unwrap_or_default();
-    name.push(format!(".{word}.h5"));
+    name.push(format!(".{word}.{}", ending.unwrap_or("h5")));
     path.with_file_name(name)
 }
 
@@ -264,7 +265,8 @@ mod tests {
     }
 
     #[test]
-    fn the_name_of_a_failed_file_ends_in_h5() {
+    fn a_name_beside_another_keeps_its_ending() {
+        assert_eq!(beside(Path::new("x/a.csv"), "17"), Path::new("x/a.17.csv"));
         assert_eq!(beside(Path::new("x/a.h5"), "failed"), Path::new("x/a.failed.h5"));
         assert_eq!(beside(Path::new("a.b"), "failed"), Path::new("a.b.failed.h5"));
     }

@@ -5,7 +5,9 @@ use super::{Attribute, Error, LibraryError};
 use crate::model::did_you_mean;
 use crate::run::{Contact, Event, EventKind, Peak};
 use hdf5::{File, IndexType, IterationOrder, MinorErrorCode};
+use ndarray::{Array2, s};
 use std::io::{Error as SystemError, ErrorKind};
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 /// A result file, open for reading. Its samples stay on disk until they are asked for.
@@ -192,21 +194,46 @@ impl ResultFile {
     /// # Errors
     /// [`Error::Missing`] if there is no such dataset, or what reading it meets.
     pub fn table(&self, name: &str) -> Result<Table, Error> {
+        let dataset = self.dataset(name)?;
+        self.table_rows(dataset, 0..self.length(dataset.rows()))
+    }
+
+    /// The dataset of this name, if it is in the file.
+    ///
+    /// # Errors
+    /// [`Error::Missing`] if it is not.
+    pub fn dataset(&self, name: &str) -> Result<&'static Dataset, Error> {
         let dataset = Dataset::find(name).filter(|_| self.file.link_exists(name));
-        let Some(dataset) = dataset else {
-            return Err(Error::Missing {
-                path: self.path.clone(),
-                what: format!("dataset \"{name}\""),
-                hint: did_you_mean(name, DATASETS.iter().map(|dataset| dataset.name)),
-            });
-        };
-        let values = self
-            .file
-            .dataset(name)
-            .and_then(|handle| handle.read_raw())
-            .map_err(|error| self.failed(&format!("read {name} of"), error))?;
+        dataset.ok_or_else(|| Error::Missing {
+            path: self.path.clone(),
+            what: format!("dataset \"{name}\""),
+            hint: did_you_mean(name, DATASETS.iter().map(|dataset| dataset.name)),
+        })
+    }
+
+    /// Some rows of a dataset, for those who need not have all of a long file at once.
+    ///
+    /// # Errors
+    /// What reading meets.
+    pub fn table_rows(
+        &self,
+        dataset: &'static Dataset,
+        rows: Range<usize>,
+    ) -> Result<Table, Error> {
         let width = dataset.items().map_or(1, |items| self.length(items));
-        Ok(Table { dataset, rows: self.length(dataset.rows()), width, values })
+        let empty = rows.is_empty() || width == 0;
+        let read = |handle: hdf5::Dataset| match (empty, dataset.items()) {
+            (true, _) => Ok(Vec::new()),
+            (_, None) => Ok(handle.read_slice_1d(s![rows.clone()])?.to_vec()),
+            (_, Some(_)) => {
+                let values: Array2<f64> = handle.read_slice_2d(s![rows.clone(), ..])?;
+                Ok(values.into_raw_vec_and_offset().0)
+            }
+        };
+        let values = self.file.dataset(dataset.name).and_then(read);
+        let values =
+            values.map_err(|error| self.failed(&format!("read {} of", dataset.name), error))?;
+        Ok(Table { dataset, rows: rows.len(), width, values })
     }
 
     /// A dataset over time that not every result has, such as `reference_digits`; `None` where it

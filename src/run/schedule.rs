@@ -76,7 +76,8 @@ impl Schedule {
     pub fn time<S: Scalar>(&self, k: u64) -> S {
         match &self.grid {
             Grid::Uniform { interval, multiples, .. } if k < *multiples => {
-                S::from_octuple(F256::from(k) * *interval)
+                // the product, rounded, may pass a duration that it equals in decimals
+                S::from_octuple((F256::from(k) * *interval).min(self.duration))
             }
             Grid::Uniform { .. } => self.duration(),
             // the duration, rounded to a double, may lie beyond itself
@@ -140,5 +141,10 @@ mod tests {
         let schedule = schedule("0.1", "0.1").at(vec![0.1]);
         assert!(schedule.time::<F256>(0) <= schedule.duration());
         assert_eq!(schedule.time::<f64>(0), 0.1);
+        for (duration, interval) in [("0.003", "0.001"), ("0.012", "1e-3"), ("0.06", "1e-5")] {
+            let schedule = self::schedule(duration, interval);
+            let last: F256 = schedule.time(schedule.len() - 1);
+            assert_eq!(last, schedule.duration(), "{duration} by {interval}");
+        }
     }
 }

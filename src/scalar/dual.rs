@@ -113,6 +113,7 @@ impl<S: Scalar> PartialOrd for Dual<S> {
 impl<S: Scalar> Scalar for Dual<S> {
     const EPSILON: f64 = S::EPSILON;
     const GOES_BEYOND: bool = true;
+    const CARRIES_DERIVATIVE: bool = true;
 
     fn beyond(self) -> f64 {
         self.eps.to_f64()

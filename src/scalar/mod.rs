@@ -42,6 +42,10 @@ pub trait Scalar:
     /// Whether [`beyond`](Scalar::beyond) tells anything.
     const GOES_BEYOND: bool = false;
 
+    /// Whether numbers carry a derivative, which an iteration that looks at values must not leave
+    /// behind.
+    const CARRIES_DERIVATIVE: bool = false;
+
     /// What the number knows beyond its nearest double: in 71 digits the remainder, in dual
     /// numbers the derivative.
     fn beyond(self) -> f64 {

@@ -263,6 +263,7 @@ fn observation(row: usize, header: &Header, numbers: &mut Numbers) -> Observatio
             load_work: numbers.next(),
             residual: numbers.next(),
         },
+        beyond: Vec::new(),
     }
 }
 

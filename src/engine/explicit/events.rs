@@ -2,7 +2,7 @@
 
 use super::flow::Gauge;
 use super::search::{Course, Place, Summit};
-use super::stepper::two_sum;
+use super::stepper::{Stepper, two_sum};
 use super::{Explicit, ExplicitError};
 use crate::dae::{Advance, Fault, System};
 use crate::scalar::Scalar;
@@ -106,10 +106,10 @@ impl<S: Scalar, Y: System<S>> Explicit<S, Y> {
         self.fired.contains(&true)
     }
 
-    /// Finds out how each approach stands, after a step without event.
+    /// Finds out how each approach stands, after a step.
     pub(super) fn settle(&mut self) {
         for k in 0..self.standing.len() {
-            if !self.is_watched(k) {
+            if !self.is_watched(k) || self.fired[k] {
                 continue;
             }
             let value = self.here.approaches[k];
@@ -177,7 +177,10 @@ impl<S: Scalar, Y: System<S>> Explicit<S, Y> {
                 Target::Event(_) => value >= -self.noise(rate),
                 Target::Time(_) => value > 0.0,
             };
-            self.fired[k] = target == Target::Event(k) || (near && rate > 0.0);
+            if target == Target::Event(k) || (near && rate > 0.0) {
+                self.fired[k] = true;
+                self.standing[k] = Standing::Passed;
+            }
         }
     }
 
@@ -344,7 +347,9 @@ impl<S: Scalar, Y: System<S>> Explicit<S, Y> {
     ) -> Result<S, ExplicitError> {
         let span = reach.to_f64();
         let tolerance = self.options.tolerance;
-        let roughest = FIRST_ACCURACY.max(tolerance);
+        // a method of one order takes no cheaper partial steps
+        let adapts = matches!(self.stepper, Stepper::Extrapolation(_));
+        let roughest = if adapts { FIRST_ACCURACY.max(tolerance) } else { tolerance };
         let (mut low, mut high) = (S::zero(), reach);
         let mut at = Iterate { place: reach * S::from_f64(guess), accuracy: roughest };
         let mut last: Option<Iterate<S>> = None;

@@ -27,6 +27,8 @@ const LARGEST_GROWTH: f64 = 20.0;
 const LARGEST_CUT: f64 = 0.05;
 /// Logarithm of the error, in units of the tolerance, that is not worth another column.
 const HOPELESS: f64 = 4.0;
+/// Logarithm of the error, in units of the tolerance, from which the next column may do.
+const NEAR: f64 = 18.0;
 /// Columns over which the fall of the errors is taken.
 const SPAN: usize = 4;
 /// Columns beyond those reached that may be aimed at.
@@ -34,6 +36,17 @@ const FORESIGHT: usize = 4;
 /// Columns beyond the number aimed at that are worth more than a new start.
 const EXTRA_COLUMNS: usize = 3;
 const LARGEST_NUMBER_OF_NOTES: usize = 16;
+
+/// How columns are to be added.
+#[derive(Debug, Clone, Copy)]
+struct Work {
+    /// The last of them.
+    last: usize,
+    /// Whether rates of the approaches are wanted.
+    noting: bool,
+    /// Whether to go on to the last column, whatever the errors so far.
+    hoping: bool,
+}
 
 /// Columns, weights and increment.
 #[derive(Debug)]
@@ -103,19 +116,12 @@ impl<S: Scalar> Extrapolation<S> {
         noting: bool,
     ) -> Result<Attempt, Fault> {
         let last = (self.aim + EXTRA_COLUMNS).min(self.weights.len());
-        let (reached, accepted) = self.build(flow, from, length, norm, last, noting)?;
+        let work = Work { last, noting, hoping: false };
+        let (reached, accepted) = self.build(flow, from, length, norm, work)?;
         if accepted {
             self.extrapolate(reached, flow.len());
         }
         let next = self.choose(length.to_f64(), reached);
-        if std::env::var("TRACE").is_ok() {
-            println!(
-                "H {:.2e} reached {reached} {accepted} aim {} next {next:.2e} errs {:?}",
-                length.to_f64(),
-                self.aim,
-                self.errors[..reached].iter().map(|e| e.log10().round()).collect::<Vec<_>>()
-            );
-        }
         Ok(Attempt { accepted, next })
     }
 
@@ -127,8 +133,8 @@ impl<S: Scalar> Extrapolation<S> {
         length: S,
         norm: &Norm,
     ) -> Result<bool, Fault> {
-        let last = self.weights.len();
-        let (reached, accepted) = self.build(flow, from, length, norm, last, false)?;
+        let work = Work { last: self.weights.len(), noting: false, hoping: true };
+        let (reached, accepted) = self.build(flow, from, length, norm, work)?;
         self.extrapolate(reached, flow.len());
         Ok(accepted)
     }
@@ -141,21 +147,22 @@ impl<S: Scalar> Extrapolation<S> {
         from: &Point<S>,
         length: S,
         norm: &Norm,
-        last: usize,
-        noting: bool,
+        work: Work,
     ) -> Result<(usize, bool), Fault> {
-        for k in 1..=last {
-            self.column(flow, from, length, k, noting)?;
+        for k in 1..=work.last {
+            // only the last column's notes are wanted, and event rates are not free
+            let near = k <= SMALLEST_NUMBER_OF_COLUMNS || self.log(k - 1) < NEAR;
+            self.column(flow, from, length, k, work.noting && near)?;
             let error = if k == 1 { f64::INFINITY } else { self.estimate(k, norm, flow) };
             self.errors[k - 1] = error;
             if error <= 1.0 {
                 return Ok((k, true));
             }
-            if k > 1 && self.hopeless(k, last) {
+            if !work.hoping && k > 1 && self.hopeless(k, work.last) {
                 return Ok((k, false));
             }
         }
-        Ok((last, false))
+        Ok((work.last, false))
     }
 
     /// Whether the errors fall too slowly to meet the tolerance by the last column, even if they
@@ -219,13 +226,13 @@ impl<S: Scalar> Extrapolation<S> {
         let stride = steps.div_ceil(LARGEST_NUMBER_OF_NOTES);
         flow.clear_notes();
         let mut now = std::mem::take(&mut self.columns[k - 1]);
-        for i in 0..len {
-            self.before[i] = S::zero();
-            now[i] = step * from.rates[i];
+        self.before[..len].fill(S::zero());
+        for (now, rate) in now[..len].iter_mut().zip(&from.rates) {
+            *now = step * *rate;
         }
         for s in 1..steps {
-            for i in 0..controlled {
-                self.place[i] = from.y[i] + now[i];
+            for ((place, y), now) in self.place[..controlled].iter_mut().zip(&from.y).zip(&now) {
+                *place = *y + *now;
             }
             let done = flow.add_rates(&self.place, double, &mut self.before);
             std::mem::swap(&mut now, &mut self.before);

@@ -4,7 +4,7 @@
 //! is the independent check and the fast lane, in 71 digits the truth.
 //!
 //! - **Steps**: an eighth-order Runge–Kutta method in double precision, extrapolation of the
-//!   midpoint rule with as many columns as pay otherwise. Both work on the vector of [`flow`],
+//!   midpoint rule with as many columns as pay otherwise. Both work on the vector of `flow.rs`,
 //!   in which contacts are analytic from end to end. Cosines and sines of the turning frames are
 //!   components, set anew from the angles at each step's begin. What rounding takes from a sum
 //!   of state and increment is kept and added to the next.
@@ -264,9 +264,10 @@ impl<S: Scalar, Y: System<S>> Explicit<S, Y> {
         let here = &mut self.here;
         let mut set = |i: usize, value: S| {
             if here.y[i] != value {
-                here.y[i] = value;
                 here.low[i] = S::zero();
             }
+            // equal or not: numbers that carry more than a value compare by the value alone
+            here.y[i] = value;
         };
         for i in 0..n {
             set(i, now.q[i]);
@@ -377,7 +378,7 @@ impl<S: Scalar, Y: System<S>> Explicit<S, Y> {
         let mut powers = self.flow.system.watches().iter().enumerate();
         let waiting =
             powers.any(|(k, w)| Flow::<S, Y>::degree(*w).is_some() && self.flow.slot(k).is_none());
-        let due = self.tally.steps % REVISION == 0 && !self.flow.roots().is_empty();
+        let due = self.tally.steps.is_multiple_of(REVISION) && !self.flow.roots().is_empty();
         if !(waiting || due) {
             return Ok(());
         }
@@ -552,11 +553,8 @@ impl<S: Scalar, Y: System<S>> Engine<S> for Explicit<S, Y> {
         self.take_snapshot();
         self.tally.steps += 1;
         self.count_progress(before)?;
-        if advance == Advance::Event {
-            self.tally.events += 1;
-        } else {
-            self.settle();
-        }
+        self.tally.events += u64::from(advance == Advance::Event);
+        self.settle();
         Ok(advance)
     }
 

@@ -4,10 +4,9 @@
 //! F(t, y, ẏ) = 0,  y = (q, v, λ)
 //! ```
 //!
-//! [`Ida`] is safe to use: what is unsafe is in `ffi.rs`. What its settings are, and why, is
-//! measured in docs/numerics.md; the ones that let a run at tolerances of 1e-12 and 1e-20 finish are the
-//! fifty error-test failures a step may have, λ out of every norm, and the small first step after
-//! each restart.
+//! [`Ida`] is safe to use: what is unsafe is in `ffi.rs`. The settings that let a run at tolerances
+//! of 1e-12 and 1e-20 finish are the fifty error-test failures a step may have, λ out of every norm,
+//! and the small first step after each restart.
 //!
 //! Source of the method: A. C. Hindmarsh et al., SUNDIALS: Suite of nonlinear and
 //! differential/algebraic equation solvers, ACM TOMS 31 (2005) 363–396, and IDA's user guide.

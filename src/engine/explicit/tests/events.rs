@@ -14,7 +14,6 @@ fn throw<S: Scalar>(options: Options) -> f64 {
     assert_eq!(go(&mut engine, number("10")), Advance::Event);
     let (a, b, c) = (u * u + w * w, x * u + y * w, x * x + y * y - S::one());
     let exact = ((b * b - a * c).sqrt() - b) / a;
-    println!("{:?}", engine.counts());
     apart(engine.now().time, exact)
 }
 

@@ -47,8 +47,3 @@ fn apart<S: Scalar>(x: S, y: S) -> f64 {
 fn number<S: Scalar>(literal: &str) -> S {
     S::parse(literal).unwrap()
 }
-
-/// A count of the engine's, by name.
-fn count<S: Scalar, Y: System<S>>(engine: &Explicit<S, Y>, name: &str) -> u64 {
-    engine.counts().iter().find(|count| count.name == name).unwrap().value
-}

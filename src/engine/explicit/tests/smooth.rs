@@ -6,7 +6,7 @@ use crate::dae::Direction;
 use crate::scalar::F256;
 
 /// Largest error of an oscillator of ω = 2 after some periods, sampled within every step.
-fn oscillator_error<S: Scalar>(options: Options) -> (f64, u64) {
+fn oscillator_error<S: Scalar>(options: Options) -> f64 {
     let omega = number::<S>("2");
     let system = Oscillators::new(3, omega, S::zero(), Direction::Off);
     let mut engine = started(system, options, vec![S::one(); 3], vec![S::zero(); 3]);
@@ -24,7 +24,7 @@ fn oscillator_error<S: Scalar>(options: Options) -> (f64, u64) {
             error = error.max((at.v[2] + omega * sin).abs().to_f64() / 2.0);
         }
     }
-    (error, count(&engine, "right_hand_sides"))
+    error
 }
 
 #[test]
@@ -32,8 +32,7 @@ fn an_oscillator_keeps_its_digits_in_doubles() {
     for method in [Method::RungeKutta, Method::Extrapolation] {
         for tolerance in [1e-8, 1e-11, 1e-14] {
             let options = Options { method: Some(method), ..options(tolerance, 1e-3) };
-            let (error, work) = oscillator_error::<f64>(options);
-            println!("{method:?} {tolerance:e}: {error:e} {work}");
+            let error = oscillator_error::<f64>(options);
             assert!(error < 30.0 * tolerance, "{method:?} at {tolerance:e}: {error:e}");
         }
     }
@@ -42,8 +41,7 @@ fn an_oscillator_keeps_its_digits_in_doubles() {
 #[test]
 fn an_oscillator_keeps_its_digits_in_71() {
     for tolerance in [1e-30, 1e-50, 1e-60] {
-        let (error, work) = oscillator_error::<F256>(options(tolerance, 1e-3));
-        println!("{tolerance:e}: {error:e} {work}");
+        let error = oscillator_error::<F256>(options(tolerance, 1e-3));
         assert!(error < 10.0 * tolerance, "at {tolerance:e}: {error:e}");
     }
 }
@@ -66,7 +64,6 @@ fn half_period<S: Scalar>(cartesian: bool, options: Options) -> f64 {
         let now = engine.now().clone();
         engine.restart(&now).unwrap();
     }
-    println!("{:?}", engine.counts());
     let half: S = (passages[1] - passages[0]) * number("0.5");
     apart(half, number(HALF_PERIOD))
 }
@@ -76,20 +73,9 @@ fn a_pendulum_swings_as_the_mean_says() {
     for cartesian in [false, true] {
         for tolerance in [1e-10, 1e-14] {
             let error = half_period::<f64>(cartesian, options(tolerance, 1e-3));
-            println!("{tolerance:e}: {error:e}");
             assert!(error < 30.0 * tolerance, "cartesian {cartesian}: {error:e}");
         }
         let error = half_period::<F256>(cartesian, options(1e-60, 1e-3));
-        println!("{error:e}");
         assert!(error < 1e-58, "cartesian {cartesian}: {error:e}");
     }
-}
-#[test]
-fn zz_trace() {
-    let omega = number::<F256>("2");
-    let system = Oscillators::new(3, omega, F256::zero(), Direction::Off);
-    let mut engine =
-        started(system, options(1e-60, 1e-3), vec![F256::one(); 3], vec![F256::zero(); 3]);
-    go(&mut engine, number("20"));
-    println!("{:?}", engine.counts());
 }

@@ -176,10 +176,12 @@ fn turn_of<S: Scalar>(angle: S) -> Turn<S> {
 }
 
 /// Balls in free flight along one line each, and a wall at depth zero that pushes with
-/// K δ^1.5 (1 + a δ̇ / v₀) once touched; the event functions are depth over `length`. Integrals:
-/// what each wall has dissipated.
+/// K δ^(1 + 1/d) (1 + a δ̇ / v₀) once touched; the event functions are depth over `length`.
+/// Integrals: what each wall has dissipated.
 pub struct Balls<S> {
     pub stiffness_by_mass: S,
+    /// The degree d: two for Hertz's law.
+    pub degree: u32,
     /// The weight a of the damping.
     pub damping: S,
     /// Constant acceleration towards the wall (m/s²).
@@ -188,7 +190,6 @@ pub struct Balls<S> {
     pub impact: Vec<Option<S>>,
     watches: Vec<Watch>,
     length: f64,
-    root_length: S,
     scales: (Vec<f64>, Vec<f64>),
     accelerations: Vec<S>,
     powers: Vec<S>,
@@ -201,12 +202,12 @@ impl<S: Scalar> Balls<S> {
         let length = 1e-3;
         Balls {
             stiffness_by_mass,
+            degree: 2,
             damping,
             gravity: S::zero(),
             impact: vec![None; count],
             watches: vec![watch(Direction::Rising); count],
             length,
-            root_length: S::from_f64(length).sqrt(),
             scales: (vec![length; count], vec![1.0; count]),
             accelerations: vec![S::zero(); count],
             powers: vec![S::zero(); count],
@@ -224,8 +225,16 @@ impl<S: Scalar> Balls<S> {
         self.impact[ball] = impact;
         self.watches[ball] = match impact {
             None => watch(Direction::Rising),
-            Some(_) => Watch { direction: Direction::Falling, power: 0.5 },
+            Some(_) => Watch { direction: Direction::Falling, power: 1.0 / f64::from(self.degree) },
         };
+    }
+
+    fn root(&self, depth: S) -> S {
+        match self.degree {
+            2 => depth.sqrt(),
+            _ if depth == S::zero() => depth,
+            degree => depth.powf(S::ratio(1, i64::from(degree))),
+        }
     }
 
     fn push(&mut self, ball: usize, depth: S, root: S, rate: S) {
@@ -258,7 +267,7 @@ impl<S: Scalar> System<S> for Balls<S> {
     fn evaluate(&mut self, state: State<'_, S>) -> Result<(), Fault> {
         for (ball, (depth, rate)) in state.q.iter().zip(state.v).enumerate() {
             let depth = depth.max(S::zero());
-            self.push(ball, depth, depth.sqrt(), *rate);
+            self.push(ball, depth, self.root(depth), *rate);
         }
         Ok(())
     }
@@ -268,10 +277,12 @@ impl<S: Scalar> System<S> for Balls<S> {
         roots: &[Option<S>],
     ) -> Result<(), Fault> {
         self.evaluate(state)?;
+        let root_length = self.root(self.length());
         for (ball, sigma) in roots.iter().enumerate() {
             if let Some(sigma) = sigma {
-                let root = *sigma * self.root_length;
-                self.push(ball, root * root, root, state.v[ball]);
+                let root = *sigma * root_length;
+                let depth = (1..self.degree).fold(root, |power, _| power * root);
+                self.push(ball, depth, root, state.v[ball]);
             }
         }
         Ok(())

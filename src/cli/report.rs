@@ -1,0 +1,38 @@
+//! `freeplay report FILE…`
+
+use super::Failure;
+use crate::record::ResultFile;
+use crate::report::{Error, Report};
+use std::path::PathBuf;
+
+/// Arguments of `report`.
+#[derive(Debug, clap::Args)]
+pub struct Arguments {
+    /// Result files (HDF5): one run, or several to be compared.
+    #[arg(value_name = "FILE", required = true)]
+    files: Vec<PathBuf>,
+    /// Page to write (HTML).
+    #[arg(short, long, value_name = "PAGE", default_value = "report.html")]
+    output: PathBuf,
+    /// Replace the output if it exists.
+    #[arg(long)]
+    force: bool,
+}
+
+/// Writes a page on one or several runs.
+pub(super) fn report(arguments: &Arguments) -> Result<(), Failure> {
+    let files: Vec<ResultFile> = arguments
+        .files
+        .iter()
+        .map(|path| ResultFile::open(path))
+        .collect::<Result<_, _>>()
+        .map_err(Failure::input)?;
+    let report = Report::new(&files).map_err(Failure::input)?;
+    report
+        .write(&arguments.output, arguments.force)
+        .map_err(|error: Error| Failure::output(error))?;
+    let runs = if files.len() == 1 { "1 run".to_owned() } else { format!("{} runs", files.len()) };
+    let size = report.html().len() as f64 / 1e6;
+    super::print(format_args!("{}: {runs}, {size:.2} MB\n", arguments.output.display()));
+    Ok(())
+}

@@ -1,0 +1,136 @@
+//! The motion: an HDF5 file with a matrix for each thing of the scene.
+
+use super::super::WriteError;
+use super::scene::{Arrow, Body, Scene};
+use crate::record::{LibraryError, ResultFile};
+use hdf5::file::LibraryVersion;
+use hdf5::types::VarLenAscii;
+use hdf5::{Extent, File, Group, SimpleExtents};
+use ndarray::Array2;
+use std::path::Path;
+
+/// Rows of a chunk: the viewer reads row by row and keeps one chunk.
+const CHUNK_ROWS: usize = 128;
+const DEFLATE: u8 = 4;
+
+const OF_BODY: [&str; 8] = ["Time", "x", "y", "z", "alpha", "beta", "gamma", "color"];
+const OF_ARROW: [&str; 8] =
+    ["Time", "toPoint x", "toPoint y", "toPoint z", "delta x", "delta y", "delta z", "color"];
+
+/// The columns of the result file that move the scene.
+struct Track<'a> {
+    file: &'a ResultFile,
+    rows: &'a [usize],
+    times: Vec<f64>,
+}
+
+/// Writes the motion of the rows to an empty file.
+pub(super) fn write(
+    file: &ResultFile,
+    scene: &Scene,
+    rows: &[usize],
+    path: &Path,
+) -> Result<(), WriteError> {
+    let output = create(path).map_err(library)?;
+    let track = Track { file, rows, times: file.times()? };
+    {
+        let bodies = output.create_group("bodies").map_err(library)?;
+        for body in &scene.bodies {
+            let motion = track.of_body(body)?;
+            put(&bodies, &body.name, &OF_BODY, &motion).map_err(library)?;
+        }
+        let forces = output.create_group("forces").map_err(library)?;
+        for arrow in &scene.arrows {
+            let motion = track.of_arrow(arrow, scene.top())?;
+            put(&forces, &arrow.name, &OF_ARROW, &motion).map_err(library)?;
+        }
+    }
+    output.flush().map_err(library)?;
+    output.close().map_err(library)
+}
+
+fn library(error: hdf5::Error) -> WriteError {
+    WriteError::write(LibraryError::from(error))
+}
+
+/// The viewer opens files for reading while another program writes, for which HDF5 wants the
+/// layout of its release 1.10.
+fn create(path: &Path) -> hdf5::Result<File> {
+    File::with_options()
+        .with_fapl(|access| access.libver_bounds(LibraryVersion::V110, LibraryVersion::V110))
+        .with_fcpl(|creation| creation.obj_track_times(false))
+        .create(path)
+}
+
+fn put(group: &Group, name: &str, labels: &[&str; 8], motion: &Array2<f64>) -> hdf5::Result<()> {
+    let extents = vec![Extent::resizable(motion.nrows()), Extent::fixed(8)];
+    let dataset = group
+        .create_group(name)?
+        .new_dataset::<f64>()
+        .shuffle()
+        .deflate(DEFLATE)
+        .chunk(vec![CHUNK_ROWS, 8])
+        .obj_track_times(false)
+        .shape(SimpleExtents::from_vec(extents))
+        .create("data")?;
+    if motion.nrows() > 0 {
+        dataset.write(motion)?;
+    }
+    let labels: Result<Vec<VarLenAscii>, _> = labels.iter().map(VarLenAscii::from_ascii).collect();
+    let labels = labels.map_err(|error| hdf5::Error::from(error.to_string()))?;
+    dataset.new_attr::<VarLenAscii>().shape(8).create("Column Label")?.write(&labels)
+}
+
+impl Track<'_> {
+    fn column(&self, dataset: &str, item: usize) -> Result<Vec<f64>, WriteError> {
+        Ok(self.file.table(dataset)?.column(item))
+    }
+
+    /// A matrix whose rows are made from rows of the file.
+    fn matrix(&self, of: impl Fn(usize) -> [f64; 6]) -> Array2<f64> {
+        let mut matrix = Array2::zeros((self.rows.len(), 8));
+        for (mut line, &row) in matrix.rows_mut().into_iter().zip(self.rows) {
+            line[0] = self.times[row];
+            for (place, value) in of(row).into_iter().enumerate() {
+                line[1 + place] = value;
+            }
+        }
+        matrix
+    }
+
+    /// x, y and angle of a body; the ground stands still.
+    fn pose(&self, body: Option<usize>) -> Result<impl Fn(usize) -> [f64; 3] + use<>, WriteError> {
+        let columns = match body {
+            None => None,
+            Some(body) => Some([
+                self.column("position_x", body)?,
+                self.column("position_y", body)?,
+                self.column("angle", body)?,
+            ]),
+        };
+        Ok(move |row: usize| {
+            columns.as_ref().map_or([0.0; 3], |c| [c[0][row], c[1][row], c[2][row]])
+        })
+    }
+
+    fn of_body(&self, body: &Body) -> Result<Array2<f64>, WriteError> {
+        let pose = self.pose(body.index)?;
+        Ok(self.matrix(|row| {
+            let [x, y, angle] = pose(row);
+            [x, y, 0.0, 0.0, 0.0, angle]
+        }))
+    }
+
+    fn of_arrow(&self, arrow: &Arrow, height: f64) -> Result<Array2<f64>, WriteError> {
+        let pose = self.pose(arrow.body)?;
+        let force_x = self.column("joint_force_x", arrow.joint)?;
+        let force_y = self.column("joint_force_y", arrow.joint)?;
+        let [u, v] = arrow.point;
+        Ok(self.matrix(|row| {
+            let [x, y, angle] = pose(row);
+            let (sin, cos) = angle.sin_cos();
+            let tip = [x + cos * u - sin * v, y + sin * u + cos * v];
+            [tip[0], tip[1], height, force_x[row], force_y[row], 0.0]
+        }))
+    }
+}

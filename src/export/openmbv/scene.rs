@@ -1,0 +1,280 @@
+//! The scene: what the bodies look like, as OpenMBV's XML.
+
+use super::super::Error;
+use crate::model::{Description, JointKind, NamedPoint};
+use crate::record::ResultFile;
+use std::f64::consts::TAU;
+use std::fmt::Write;
+
+/// From one layer of bodies to the next, over the thickness of a body.
+const LAYER: f64 = 1.1;
+
+/// Corners of a circle.
+const CORNERS: usize = 48;
+
+/// The things of a scene and their shapes.
+pub(super) struct Scene {
+    /// The ground, then the bodies of the file.
+    pub bodies: Vec<Body>,
+    /// One a joint.
+    pub arrows: Vec<Arrow>,
+    /// Half the width of a bar (m).
+    half_width: f64,
+    /// Length of an arrow by force (m/N).
+    arrow_scale: f64,
+}
+
+/// A body and its shapes, in its own frame.
+pub(super) struct Body {
+    /// Its name.
+    pub name: String,
+    /// Its index in the file; `None` for the ground.
+    pub index: Option<usize>,
+    shapes: Vec<Shape>,
+}
+
+/// The arrow of a joint's force.
+pub(super) struct Arrow {
+    /// Name of the joint.
+    pub name: String,
+    /// Index of the joint in the file.
+    pub joint: usize,
+    /// Index of the second body in the file; `None` for the ground.
+    pub body: Option<usize>,
+    /// The joint's point on that body, in its frame (m).
+    pub point: [f64; 2],
+}
+
+/// A prism over an outline.
+struct Shape {
+    name: String,
+    outlines: Vec<Vec<[f64; 2]>>,
+}
+
+impl Scene {
+    /// The scene of a case, whose largest force the file tells.
+    pub fn of(description: &Description, file: &ResultFile) -> Result<Scene, Error> {
+        let points =
+            description.bodies.iter().map(|body| &body.points).chain([&description.ground]);
+        let extent = points.map(|points| spread(points)).fold(0.0, f64::max);
+        let extent = if extent > 0.0 { extent } else { 0.1 };
+        let half_width = 0.02 * extent;
+        let body = |name: &str, index: Option<usize>, points: &[NamedPoint]| Body {
+            name: name.to_owned(),
+            index,
+            shapes: bars(points, half_width)
+                .into_iter()
+                .chain(eyes(description, name, points, half_width))
+                .collect(),
+        };
+        let mut bodies = vec![body("ground", None, &description.ground)];
+        for (index, name) in file.bodies().iter().enumerate() {
+            let found = description.bodies.iter().find(|body| body.name == *name);
+            let points = found.map_or(&[][..], |found| &found.points);
+            bodies.push(body(name, Some(index), points));
+        }
+        let arrows = file.joints().iter().enumerate();
+        let largest = largest_force(file)?;
+        Ok(Scene {
+            arrows: arrows
+                .filter_map(|(joint, name)| arrow(description, file, joint, name))
+                .collect(),
+            bodies,
+            half_width,
+            arrow_scale: if largest > 0.0 { extent / largest } else { 1.0 },
+        })
+    }
+
+    /// Height above all bodies (m), where the arrows are.
+    pub fn top(&self) -> f64 {
+        LAYER * self.half_width * self.bodies.len() as f64
+    }
+
+    /// How many things move.
+    pub fn things(&self) -> usize {
+        self.bodies.len() + self.arrows.len()
+    }
+
+    /// The scene as XML.
+    pub fn to_xml(&self, name: &str) -> String {
+        let mut xml = Xml::default();
+        xml.line("<?xml version=\"1.0\" encoding=\"UTF-8\"?>");
+        let namespace = "http://www.mbsim-env.de/OpenMBV";
+        xml.open("Group", &format!("name=\"{name}\" xmlns=\"{namespace}\""));
+        xml.open("Group", "name=\"bodies\"");
+        for (k, body) in self.bodies.iter().enumerate() {
+            self.body(&mut xml, k, body);
+        }
+        xml.close();
+        xml.open("Group", "name=\"forces\"");
+        for arrow in &self.arrows {
+            self.arrow(&mut xml, arrow);
+        }
+        xml.close();
+        xml.close();
+        xml.text
+    }
+
+    fn body(&self, xml: &mut Xml, layer: usize, body: &Body) {
+        xml.open("CompoundRigidBody", &format!("name=\"{}\"", body.name));
+        // hue, saturation, value: the ground grey, the bodies round the wheel
+        let hue = (layer as f64 * 0.381_966) % 1.0;
+        let colour = if body.index.is_some() { [hue, 0.6, 0.9] } else { [0.0, 0.0, 0.5] };
+        xml.vector("diffuseColor", &colour);
+        xml.vector("initialTranslation", &[0.0; 3]);
+        xml.vector("initialRotation", &[0.0; 3]);
+        xml.number("scaleFactor", 1.0);
+        for shape in &body.shapes {
+            xml.open("Extrusion", &format!("name=\"{}\"", shape.name));
+            xml.vector("initialTranslation", &[0.0, 0.0, LAYER * self.half_width * layer as f64]);
+            xml.vector("initialRotation", &[0.0; 3]);
+            xml.number("scaleFactor", 1.0);
+            xml.element("windingRule", "'odd'");
+            xml.number("height", self.half_width);
+            for outline in &shape.outlines {
+                let corners = outline.iter().map(|[x, y]| format!("{x:.9}, {y:.9}, 0"));
+                let corners: Vec<String> = corners.collect();
+                xml.element("contour", &format!("[{}]", corners.join("; ")));
+            }
+            xml.close();
+        }
+        xml.close();
+    }
+
+    fn arrow(&self, xml: &mut Xml, arrow: &Arrow) {
+        xml.open("Arrow", &format!("name=\"{}\"", arrow.name));
+        xml.vector("diffuseColor", &[0.0, 1.0, 0.8]);
+        xml.number("diameter", 0.4 * self.half_width);
+        xml.number("headDiameter", self.half_width);
+        xml.number("headLength", 1.5 * self.half_width);
+        xml.element("type", "'toHead'");
+        xml.element("referencePoint", "'toPoint'");
+        xml.number("scaleLength", self.arrow_scale);
+        xml.close();
+    }
+}
+
+/// XML as it is written, indented by the elements that are open.
+#[derive(Default)]
+struct Xml {
+    text: String,
+    open: Vec<&'static str>,
+}
+
+impl Xml {
+    fn line(&mut self, line: &str) {
+        let indent = "  ".repeat(self.open.len());
+        self.text.push_str(&format!("{indent}{line}\n"));
+    }
+
+    fn open(&mut self, name: &'static str, attributes: &str) {
+        self.line(&format!("<{name} {attributes}>"));
+        self.open.push(name);
+    }
+
+    fn close(&mut self) {
+        if let Some(name) = self.open.pop() {
+            self.line(&format!("</{name}>"));
+        }
+    }
+
+    fn element(&mut self, name: &str, text: &str) {
+        self.line(&format!("<{name}>{text}</{name}>"));
+    }
+
+    fn number(&mut self, name: &str, value: f64) {
+        self.element(name, &format!("{value:?}"));
+    }
+
+    fn vector(&mut self, name: &str, values: &[f64]) {
+        let mut text = String::from("[");
+        for (k, value) in values.iter().enumerate() {
+            let separator = if k == 0 { "" } else { ";" };
+            let _ = write!(text, "{separator}{value:?}");
+        }
+        self.element(name, &(text + "]"));
+    }
+}
+
+fn place(point: &NamedPoint) -> [f64; 2] {
+    [point.at[0].to_f64(), point.at[1].to_f64()]
+}
+
+/// Largest distance of two points (m).
+fn spread(points: &[NamedPoint]) -> f64 {
+    let pairs = points.iter().flat_map(|a| points.iter().map(move |b| (place(a), place(b))));
+    pairs.map(|(a, b)| (a[0] - b[0]).hypot(a[1] - b[1])).fold(0.0, f64::max)
+}
+
+/// Bars from each point to the next, back to the first where there are more than two.
+fn bars(points: &[NamedPoint], half_width: f64) -> Vec<Shape> {
+    let last = if points.len() > 2 { points.len() } else { points.len().saturating_sub(1) };
+    let bar = |k: usize| {
+        let (a, b) = (&points[k], &points[(k + 1) % points.len()]);
+        let name = format!("bar_{}_{}", a.name, b.name);
+        let (a, b) = (place(a), place(b));
+        let length = (b[0] - a[0]).hypot(b[1] - a[1]);
+        let across = [-(b[1] - a[1]) / length * half_width, (b[0] - a[0]) / length * half_width];
+        let corner = |[x, y]: [f64; 2], sign: f64| [x + sign * across[0], y + sign * across[1]];
+        let outline = vec![corner(a, -1.0), corner(b, -1.0), corner(b, 1.0), corner(a, 1.0)];
+        (length > 0.0).then(|| Shape { name, outlines: vec![outline] })
+    };
+    (0..last).filter_map(bar).collect()
+}
+
+/// What sits at the points of a body: bearings, journals, plain eyes.
+fn eyes(
+    description: &Description,
+    body: &str,
+    points: &[NamedPoint],
+    half_width: f64,
+) -> Vec<Shape> {
+    let eye = |point: &NamedPoint| {
+        let centre = place(point);
+        let here = format!("{body}.{}", point.name);
+        let clearance = description.joints.iter().find_map(|joint| match &joint.kind {
+            JointKind::Revolute { clearance: Some(clearance) } => {
+                let side = joint.between.iter().position(|end| *end == here)?;
+                Some((side, clearance))
+            }
+            JointKind::Revolute { clearance: None } => None,
+        });
+        let (name, radii) = match clearance {
+            None => (format!("eye_{}", point.name), vec![1.4 * half_width]),
+            Some((0, clearance)) => {
+                let inner = clearance.bearing_radius.to_f64();
+                (format!("bearing_{}", point.name), vec![inner + half_width, inner])
+            }
+            Some((_, clearance)) => {
+                let radius = clearance.bearing_radius.to_f64() - clearance.radial.to_f64();
+                (format!("journal_{}", point.name), vec![radius])
+            }
+        };
+        Shape { name, outlines: radii.into_iter().map(|radius| circle(centre, radius)).collect() }
+    };
+    points.iter().map(eye).collect()
+}
+
+fn circle([x, y]: [f64; 2], radius: f64) -> Vec<[f64; 2]> {
+    let angle = |k: usize| TAU * k as f64 / CORNERS as f64;
+    (0..CORNERS).map(|k| [x + radius * angle(k).cos(), y + radius * angle(k).sin()]).collect()
+}
+
+fn arrow(description: &Description, file: &ResultFile, joint: usize, name: &str) -> Option<Arrow> {
+    let found = description.joints.iter().find(|joint| joint.name == name)?;
+    let (body, point) = found.between[1].split_once('.')?;
+    let index = file.bodies().iter().position(|known| known == body);
+    let points = match description.bodies.iter().find(|known| known.name == body) {
+        Some(body) => &body.points,
+        None => &description.ground,
+    };
+    let point = place(points.iter().find(|known| known.name == point)?);
+    Some(Arrow { name: name.to_owned(), joint, body: index, point })
+}
+
+/// The largest force of any joint at a sample (N).
+fn largest_force(file: &ResultFile) -> Result<f64, Error> {
+    let (x, y) = (file.table("joint_force_x")?, file.table("joint_force_y")?);
+    let forces = x.values.iter().zip(&y.values).map(|(x, y)| x.hypot(*y));
+    Ok(forces.filter(|force| force.is_finite()).fold(0.0, f64::max))
+}

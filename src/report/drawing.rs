@@ -1,0 +1,141 @@
+//! What the page needs to draw a mechanism: points on bodies, and the joints between them.
+
+use crate::case::{Case, Changes};
+use crate::model::{Description, DriveKind, JointKind, LoadKind, NamedPoint};
+use crate::record::ResultFile;
+use serde::Serialize;
+use std::path::Path;
+
+/// A mechanism's shape, in the order of the result file.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub(super) struct Drawing {
+    /// Points of the ground, in the fixed frame.
+    ground: Vec<Point>,
+    /// Points of each body, in its frame.
+    bodies: Vec<Vec<Point>>,
+    joints: Vec<DrawnJoint>,
+    /// Acceleration of free fall (m/s²), fixed frame.
+    gravity: Option<[f64; 2]>,
+}
+
+/// A named point.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+struct Point {
+    name: String,
+    /// Coordinates (m).
+    at: [f64; 2],
+}
+
+/// A joint between two points.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+struct DrawnJoint {
+    /// Bearing and journal, or the two points of an ideal joint.
+    between: [PointOnBody; 2],
+    /// Whether a drive sits on it.
+    driven: bool,
+    clearance: Option<DrawnClearance>,
+}
+
+/// A point by its body and its place among the body's points.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+struct PointOnBody {
+    /// Index of the body; none is the ground.
+    body: Option<usize>,
+    point: usize,
+}
+
+/// The circles of a clearance (m).
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+struct DrawnClearance {
+    bearing_radius: f64,
+    radial: f64,
+}
+
+impl Drawing {
+    /// The drawing of a case; `None` where it does not speak of the bodies and joints of the
+    /// result file.
+    pub fn of(case: &Case, file: &ResultFile) -> Option<Drawing> {
+        let description = &case.description;
+        let bodies = description.bodies.iter().map(|body| &body.name);
+        let joints = description.joints.iter().map(|joint| &joint.name);
+        if !bodies.eq(file.bodies()) || !joints.eq(file.joints()) {
+            return None;
+        }
+        let gravity = description.loads.iter().map(|load| match &load.kind {
+            LoadKind::Gravity { acceleration } => coordinates(acceleration),
+        });
+        Some(Drawing {
+            ground: points(&description.ground),
+            bodies: description.bodies.iter().map(|body| points(&body.points)).collect(),
+            joints: joints_of(description)?,
+            gravity: gravity.reduce(|[x, y], [also_x, also_y]| [x + also_x, y + also_y]),
+        })
+    }
+}
+
+/// The case of a result file; `None` where its text is not one that this program reads.
+pub(super) fn case_of(file: &ResultFile) -> Option<Case> {
+    let text = file.text("case_toml")?;
+    Case::from_text(Path::new("case.toml"), text, &Changes::default()).ok()
+}
+
+/// Duration of one turn of the first drive (s).
+pub(super) fn period(case: &Case) -> Option<f64> {
+    let DriveKind::Speed { speed_rpm, .. } = &case.description.drives.first()?.kind;
+    let period = 60.0 / speed_rpm.to_f64().abs();
+    period.is_finite().then_some(period)
+}
+
+/// Whether two cases describe the same mechanism, under the same loads and drives, clearances
+/// aside.
+pub(super) fn same_but_for_clearances(one: &Case, other: &Case) -> bool {
+    ideal(&one.description) == ideal(&other.description)
+}
+
+/// A description without clearances and start poses.
+fn ideal(description: &Description) -> Description {
+    let mut ideal = description.clone();
+    ideal.start.clear();
+    for joint in &mut ideal.joints {
+        let JointKind::Revolute { clearance } = &mut joint.kind;
+        *clearance = None;
+    }
+    ideal
+}
+
+fn joints_of(description: &Description) -> Option<Vec<DrawnJoint>> {
+    let joint = |joint: &crate::model::JointDescription| {
+        let JointKind::Revolute { clearance } = &joint.kind;
+        let [first, second] = &joint.between;
+        Some(DrawnJoint {
+            between: [point_on_body(description, first)?, point_on_body(description, second)?],
+            driven: description.drives.iter().any(|drive| drive.joint == joint.name),
+            clearance: clearance.as_ref().map(|clearance| DrawnClearance {
+                bearing_radius: clearance.bearing_radius.to_f64(),
+                radial: clearance.radial.to_f64(),
+            }),
+        })
+    };
+    description.joints.iter().map(joint).collect()
+}
+
+/// A point written `body.point`.
+fn point_on_body(description: &Description, written: &str) -> Option<PointOnBody> {
+    let (name, point) = written.split_once('.')?;
+    let body = description.bodies.iter().position(|body| body.name == name);
+    let points = match body {
+        Some(body) => &description.bodies[body].points,
+        None => &description.ground,
+    };
+    let point = points.iter().position(|known| known.name == point)?;
+    Some(PointOnBody { body, point })
+}
+
+fn points(points: &[NamedPoint]) -> Vec<Point> {
+    let point = |point: &NamedPoint| Point { name: point.name.clone(), at: coordinates(&point.at) };
+    points.iter().map(point).collect()
+}
+
+fn coordinates(at: &[crate::scalar::Decimal; 2]) -> [f64; 2] {
+    [at[0].to_f64(), at[1].to_f64()]
+}

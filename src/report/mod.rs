@@ -1,0 +1,123 @@
+//! The report: one page, made for people, that needs no network and opens from a disk.
+//!
+//! It holds what was run, a summary, charts, and the mechanism in motion. The samples go into the
+//! page packed (`pack`); the script that draws them is in `page/`.
+
+mod drawing;
+mod error;
+mod html;
+mod number;
+mod pack;
+mod page;
+mod provenance;
+mod run;
+mod tables;
+mod thin;
+
+pub use error::Error;
+
+use crate::post::Summary;
+use crate::record::ResultFile;
+use html::{escape, json_in_script};
+use run::{PageRun, Run};
+use std::fs::{self, OpenOptions};
+use std::io::{self, ErrorKind, Write};
+use std::path::Path;
+use tables::Summarised;
+
+/// Samples that a page holds at most, of all its runs together.
+const MOST_SAMPLES: usize = 240_000;
+
+/// A report on one or several runs.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Report {
+    html: String,
+}
+
+impl Report {
+    /// Makes the report on these result files, in their order.
+    ///
+    /// # Errors
+    /// A file cannot be read, or its samples cannot be packed.
+    pub fn new(files: &[ResultFile]) -> Result<Report, Error> {
+        let labels = run::labels(files);
+        let runs: Vec<Run<'_>> = files
+            .iter()
+            .zip(labels)
+            .map(|(file, label)| Run::read(file, label))
+            .collect::<Result<_, _>>()?;
+        let reference = |run: &Run<'_>| runs.iter().position(|other| other.is_ideal_of(run));
+        let references: Vec<Option<usize>> = runs.iter().map(reference).collect();
+        let most = MOST_SAMPLES / runs.len().max(1);
+        let pages: Vec<PageRun<'_>> = runs
+            .iter()
+            .zip(&references)
+            .map(|(run, reference)| run.for_page(*reference, most))
+            .collect::<Result<_, _>>()?;
+        let samples: Vec<usize> = pages.iter().map(PageRun::samples).collect();
+        let summarised: Vec<Summarised<'_>> = runs
+            .iter()
+            .map(|run| Ok(Summarised { run, summary: Summary::of(run.file, None)? }))
+            .collect::<Result<_, Error>>()?;
+        let html = page::page(&page::Content {
+            title: &escape(&title(&runs)),
+            failures: &provenance::failures(&runs),
+            summary: &tables::summary(&summarised),
+            contacts: &tables::contacts(&summarised),
+            what_was_run: &provenance::what_was_run(&runs, &samples),
+            everything: &provenance::everything(&runs),
+            runs: &json_in_script(&serde_json::to_string(&pages)?),
+            program: concat!("freeplay ", env!("CARGO_PKG_VERSION")),
+        });
+        Ok(Report { html })
+    }
+
+    /// The page.
+    pub fn html(&self) -> &str {
+        &self.html
+    }
+
+    /// Writes the page; with `force` in place of one that is there.
+    ///
+    /// # Errors
+    /// [`Error::Exists`] or [`Error::Write`].
+    pub fn write(&self, path: &Path, force: bool) -> Result<(), Error> {
+        let failed = |source| Error::Write { path: path.to_owned(), source };
+        if force {
+            return self.replace(path).map_err(failed);
+        }
+        let mut file = match OpenOptions::new().write(true).create_new(true).open(path) {
+            Err(error) if error.kind() == ErrorKind::AlreadyExists => {
+                return Err(Error::Exists { path: path.to_owned() });
+            }
+            opened => opened.map_err(failed)?,
+        };
+        file.write_all(self.html.as_bytes()).map_err(|error| {
+            let _ = fs::remove_file(path); // half a page is none
+            failed(error)
+        })
+    }
+
+    /// Writes beside the page that is there, then puts the new one in its place.
+    fn replace(&self, path: &Path) -> io::Result<()> {
+        let mut beside = path.as_os_str().to_owned();
+        beside.push(format!(".partial-{}", std::process::id()));
+        let done = fs::write(&beside, &self.html).and_then(|()| fs::rename(&beside, path));
+        if done.is_err() {
+            let _ = fs::remove_file(&beside);
+        }
+        done
+    }
+}
+
+/// Title of the page: that of its run, or the names of them.
+fn title(runs: &[Run<'_>]) -> String {
+    let named = |run: &Run<'_>| match run.file.text("title") {
+        Some(title) if !title.is_empty() => title.to_owned(),
+        _ => run.label.clone(),
+    };
+    match runs {
+        [run] => named(run),
+        runs => runs.iter().map(|run| run.label.as_str()).collect::<Vec<_>>().join(", "),
+    }
+}

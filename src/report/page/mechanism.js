@@ -1,0 +1,289 @@
+// The mechanism at one moment: bodies, joints, bearings with enlarged clearance, forces.
+import { theme, seriesColour } from "./theme.js";
+import { arrow, circle, fadingPath, label } from "./pen.js";
+
+/** Smallest radii that journal and bearing are drawn with (px). */
+const SMALLEST_JOURNAL = 4;
+
+/** Smallest and largest x and y (m) that a run's bodies reach; nothing where none is drawn. */
+export function extent(run) {
+  if (!run.drawing || run.times.length === 0) return null;
+  const box = { left: Infinity, right: -Infinity, bottom: Infinity, top: -Infinity };
+  const take = ([x, y]) => {
+    if (!Number.isFinite(x) || !Number.isFinite(y)) return;
+    [box.left, box.right] = [Math.min(box.left, x), Math.max(box.right, x)];
+    [box.bottom, box.top] = [Math.min(box.bottom, y), Math.max(box.top, y)];
+  };
+  const moments = 720;
+  for (let k = 0; k <= moments; k++) {
+    run.seek(run.begin + ((run.end - run.begin) * k) / moments);
+    const { bodies, centres } = placesOf(run, 1);
+    bodies.flat().concat(centres).forEach(take);
+  }
+  run.drawing.ground.forEach((point) => take(point.at));
+  return Number.isFinite(box.left) ? box : null;
+}
+
+/**
+ * Where each point is drawn at the time sought (m). A journal stands off its bearing by `factor`
+ * times the true offset, and its body's mass centre goes along by the mean; all else stays where
+ * it is, so that factor 1 is true.
+ */
+function placesOf(run, factor) {
+  const { drawing } = run;
+  const ground = drawing.ground.map((point) => [...point.at]);
+  const centres = run.bodies.map((name) => [run.at(run.column("position_x", name)), run.at(run.column("position_y", name))]);
+  const bodies = drawing.bodies.map((points, body) => {
+    const [x, y] = centres[body];
+    const angle = run.at(run.column("angle", run.bodies[body]));
+    const [cos, sin] = [Math.cos(angle), Math.sin(angle)];
+    return points.map(({ at: [px, py] }) => [x + cos * px - sin * py, y + sin * px + cos * py]);
+  });
+  const place = ({ body, point }) => (body === null ? ground : bodies[body])[point];
+  drawing.joints.forEach(({ between, clearance }, joint) => {
+    if (!clearance) return;
+    const [x, y] = run.offsetAt(run.joints[joint]);
+    const journal = place(between[1]);
+    const { body } = between[1];
+    if (body === null || !Number.isFinite(x)) return;
+    [x, y].forEach((offset, k) => {
+      journal[k] += (factor - 1) * offset;
+      centres[body][k] += ((factor - 1) * offset) / bodies[body].length;
+    });
+  });
+  return { ground, bodies, centres, place };
+}
+
+/** Centre of a joint (m) as drawn at the time sought. */
+export function jointPlace(run, joint, factor) {
+  return placesOf(run, factor).place(run.drawing.joints[joint].between[0]);
+}
+
+/** Radii of bearing and journal on the screen (px); what is between them is the clearance. */
+export function circles(clearance, factor, scale) {
+  const gap = factor * clearance.radial * scale;
+  const journal = Math.max(clearance.bearing_radius * scale - gap, SMALLEST_JOURNAL);
+  return { journal, bearing: journal + gap, gap };
+}
+
+/**
+ * Draws a run at the time sought. `view` maps metres to pixels; `look` says how large offsets and
+ * forces are drawn, in which colours, and what else.
+ */
+export function drawMechanism(pen, run, view, look) {
+  const places = placesOf(run, look.factor);
+  const at = (place) => [view.x(place[0]), view.y(place[1])];
+  drawGround(pen, run, places, at, look.symbol);
+  for (let body = 0; body < run.bodies.length; body++) drawBody(pen, outline(places, body).map(at), look);
+  for (const centre of places.centres) drawCentre(pen, at(centre));
+  run.drawing.joints.forEach((joint, index) => {
+    const centre = at(places.place(joint.between[0]));
+    if (joint.clearance) drawBearing(pen, run, joint, index, centre, at(places.place(joint.between[1])), view, look);
+    else drawPin(pen, centre, seriesColour(look.colourOf(run.joints[index])));
+    if (joint.driven) drawDrive(pen, centre, view, joint, look);
+  });
+  run.drawing.joints.forEach((joint, index) => {
+    if (look.forces) drawForce(pen, run, joint, index, at(places.place(joint.between[0])), view, look);
+  });
+  drawNames(pen, run, places, at, view, look);
+}
+
+/** The mechanism of another run as thin dashed lines. */
+export function drawGhost(pen, run, view) {
+  const places = placesOf(run, 1);
+  pen.strokeStyle = theme().ghost;
+  pen.lineWidth = 1.2;
+  pen.setLineDash([5, 4]);
+  for (let body = 0; body < run.bodies.length; body++) {
+    const points = outline(places, body);
+    pen.beginPath();
+    points.forEach(([x, y], k) => (k ? pen.lineTo(view.x(x), view.y(y)) : pen.moveTo(view.x(x), view.y(y))));
+    if (points.length > 2) pen.closePath();
+    pen.stroke();
+  }
+  pen.setLineDash([]);
+}
+
+function drawGround(pen, run, places, at, s) {
+  const used = new Set();
+  for (const { between } of run.drawing.joints) {
+    for (const { body, point } of between) if (body === null) used.add(point);
+  }
+  for (const point of used) {
+    const [x, y] = at(places.ground[point]);
+    pen.strokeStyle = pen.fillStyle = theme().muted;
+    pen.lineWidth = 1.3;
+    pen.beginPath();
+    pen.moveTo(x - 13 * s, y + 24 * s);
+    pen.lineTo(x, y);
+    pen.lineTo(x + 13 * s, y + 24 * s);
+    pen.closePath();
+    pen.stroke();
+    pen.beginPath();
+    pen.moveTo(x - 20 * s, y + 24 * s);
+    pen.lineTo(x + 20 * s, y + 24 * s);
+    for (let k = -16; k <= 20; k += 7) {
+      pen.moveTo(x + k * s, y + 24 * s);
+      pen.lineTo(x + (k - 6) * s, y + 31 * s);
+    }
+    pen.stroke();
+  }
+}
+
+/** A body's points; with a single one, its mass centre besides. */
+function outline(places, body) {
+  const points = places.bodies[body];
+  return points.length > 1 ? points : [...points, places.centres[body]];
+}
+
+/** A mass centre, as a quartered disc. */
+function drawCentre(pen, [x, y]) {
+  const radius = 4;
+  circle(pen, x, y, radius);
+  pen.fillStyle = theme().paper;
+  pen.fill();
+  pen.fillStyle = pen.strokeStyle = theme()["steel-edge"];
+  pen.lineWidth = 1;
+  for (const begin of [0, Math.PI]) {
+    pen.beginPath();
+    pen.moveTo(x, y);
+    pen.arc(x, y, radius, begin, begin + Math.PI / 2);
+    pen.fill();
+  }
+  circle(pen, x, y, radius);
+  pen.stroke();
+}
+
+function drawBody(pen, points, look) {
+  pen.beginPath();
+  points.forEach(([x, y], k) => (k ? pen.lineTo(x, y) : pen.moveTo(x, y)));
+  if (points.length > 2) pen.closePath();
+  pen.strokeStyle = theme()["steel-edge"];
+  pen.lineWidth = look.barWidth + 2;
+  pen.stroke();
+  pen.strokeStyle = pen.fillStyle = theme().steel;
+  pen.lineWidth = look.barWidth;
+  if (points.length > 2) pen.fill();
+  pen.stroke();
+}
+
+function drawPin(pen, [x, y], colour) {
+  circle(pen, x, y, 5);
+  pen.fillStyle = theme().paper;
+  pen.fill();
+  pen.strokeStyle = colour;
+  pen.lineWidth = 2.5;
+  pen.stroke();
+}
+
+/** The bearing as a ring, the journal in it, and the way it came. */
+function drawBearing(pen, run, joint, index, centre, journal, view, look) {
+  const colour = seriesColour(look.colourOf(run.joints[index]));
+  const { bearing, journal: radius, gap } = circles(joint.clearance, look.factor, view.scale);
+  circle(pen, ...centre, bearing + look.wall);
+  pen.fillStyle = theme()["steel-edge"];
+  pen.fill();
+  circle(pen, ...centre, bearing + look.wall - 1);
+  pen.fillStyle = theme().steel;
+  pen.fill();
+  circle(pen, ...centre, bearing);
+  pen.fillStyle = theme().panel;
+  pen.fill();
+  pen.strokeStyle = colour;
+  pen.lineWidth = 1.5;
+  pen.stroke();
+  circle(pen, ...journal, radius);
+  pen.globalAlpha = 0.3;
+  pen.fillStyle = colour;
+  pen.fill();
+  pen.globalAlpha = 1;
+  pen.stroke();
+  if (gap > 5) {
+    const scale = view.scale * look.factor;
+    const tail = tailOf(run, run.joints[index], look.time, look.tail);
+    fadingPath(pen, tail.map(([x, y]) => [centre[0] + scale * x, centre[1] - scale * y]), colour, 1.3);
+  }
+  circle(pen, ...journal, 2);
+  pen.fillStyle = colour;
+  pen.fill();
+}
+
+/** Where the journal centre was lately, as offsets (m), oldest first, the present last. */
+export function tailOf(run, name, time, duration) {
+  const [x, y] = [run.column("clearance_x", name), run.column("clearance_y", name)];
+  if (!x || !y || run.times.length === 0) return [];
+  run.seek(time - duration);
+  const points = [run.offsetAt(name)];
+  const first = run.row + 1;
+  run.seek(time);
+  for (let row = first; row <= run.row; row++) points.push([x[row], y[row]]);
+  points.push(run.offsetAt(name));
+  return points.filter(([a, b]) => Number.isFinite(a) && Number.isFinite(b));
+}
+
+function drawDrive(pen, [x, y], view, joint, look) {
+  const hole = joint.clearance ? circles(joint.clearance, look.factor, view.scale).bearing + look.wall : 5;
+  const radius = hole + 9;
+  pen.strokeStyle = theme().muted;
+  pen.lineWidth = 1.6;
+  pen.beginPath();
+  pen.arc(x, y, radius, -0.3, -1.9, true);
+  pen.stroke();
+  // A drive turns its second body; backwards, the arrow stands at the other end.
+  const angle = look.backwards ? -0.3 : -1.9;
+  const turn = look.backwards ? 1 : -1;
+  const [tipX, tipY] = [x + radius * Math.cos(angle), y + radius * Math.sin(angle)];
+  const [alongX, alongY] = [-turn * Math.sin(angle), turn * Math.cos(angle)];
+  pen.fillStyle = theme().muted;
+  pen.beginPath();
+  pen.moveTo(tipX + 6 * alongX, tipY + 6 * alongY);
+  pen.lineTo(tipX + 4 * Math.cos(angle), tipY + 4 * Math.sin(angle));
+  pen.lineTo(tipX - 4 * Math.cos(angle), tipY - 4 * Math.sin(angle));
+  pen.fill();
+}
+
+/**
+ * The force on a joint's second body: an ideal joint's starts at the pin, a contact's pushes the
+ * journal from outside, its head where they touch.
+ */
+function drawForce(pen, run, joint, index, centre, view, look) {
+  const name = run.joints[index];
+  const colour = seriesColour(look.colourOf(name));
+  const push = ([fx, fy], [ox, oy], alpha) => {
+    const [dx, dy] = [fx * look.forceScale, -fy * look.forceScale];
+    const length = Math.hypot(ox, oy);
+    pen.globalAlpha = alpha;
+    if (joint.clearance && length > 0) {
+      const { bearing } = circles(joint.clearance, look.factor, view.scale);
+      const [x, y] = [centre[0] + (bearing * ox) / length, centre[1] - (bearing * oy) / length];
+      arrow(pen, x - dx, y - dy, dx, dy, colour, 3);
+    } else {
+      arrow(pen, ...centre, dx, dy, colour, 3);
+    }
+    pen.globalAlpha = 1;
+  };
+  for (const held of look.held) {
+    if (held.run === run && held.joint === index) push(held.force, held.offset, held.alpha);
+  }
+  push(run.forceAt(index), joint.clearance ? run.offsetAt(name) : [0, 0], 1);
+}
+
+function drawNames(pen, run, places, at, view, look) {
+  if (!look.names) return;
+  run.drawing.joints.forEach((joint, index) => {
+    const [x, y] = at(places.place(joint.between[0]));
+    const hole = joint.clearance ? circles(joint.clearance, look.factor, view.scale).bearing + look.wall : 6;
+    const grounded = joint.between[0].body === null;
+    const name = run.joints[index];
+    const colour = seriesColour(look.colourOf(name));
+    if (grounded) label(pen, name, x - Math.max(20 * look.symbol, hole) - 6, y + 17 * look.symbol, { size: 14, colour, weight: "600", align: "right" });
+    else label(pen, name, x + 0.75 * hole + 5, y - 0.75 * hole - 9, { size: 14, colour, weight: "600" });
+  });
+  places.bodies.forEach((points, body) => {
+    const drawn = points.map(at);
+    const span = Math.max(...drawn.map(([x, y]) => Math.hypot(x - drawn[0][0], y - drawn[0][1])));
+    if (span < 90) return;
+    const [x, y] = at(places.centres[body]);
+    label(pen, run.bodies[body], x, y + 15, { size: 11, colour: theme().muted, align: "center" });
+  });
+}

@@ -1,0 +1,232 @@
+//! `freeplay plot` as a user meets it, and figures of files that no simulation would make.
+
+#[expect(dead_code, reason = "what a file must hold is tested beside the reader")]
+mod recorded;
+
+use freeplay::figure::{Error, Format, Options, Over, draw};
+use freeplay::record::ResultFile;
+use recorded::Recorded;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+fn folder() -> tempfile::TempDir {
+    tempfile::tempdir().unwrap()
+}
+
+fn files_in(folder: &Path) -> Vec<String> {
+    let entries = std::fs::read_dir(folder).unwrap();
+    let mut names: Vec<String> =
+        entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+    names.sort();
+    names
+}
+
+fn freeplay(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_freeplay")).args(arguments).output().unwrap()
+}
+
+/// A short run of a case of the project.
+fn run(folder: &Path, case: &str) -> PathBuf {
+    let case = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases").join(format!("{case}.toml"));
+    let file = folder.join(case.with_extension("h5").file_name().unwrap());
+    let [case, output] = [&case, &file].map(|path| path.to_str().unwrap());
+    let ran = freeplay(&["run", case, "-o", output, "--set", "run.duration=0.002", "--quiet"]);
+    assert!(ran.status.success(), "{ran:?}");
+    file
+}
+
+fn plot(files: &[&Path], output: &Path, more: &[&str]) -> Output {
+    let mut arguments = vec!["plot"];
+    arguments.extend(files.iter().map(|file| file.to_str().unwrap()));
+    arguments.extend(["-o", output.to_str().unwrap()]);
+    arguments.extend(more);
+    freeplay(&arguments)
+}
+
+fn told(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+#[test]
+fn figures_are_written_in_the_formats_asked_for_and_nothing_else_is() {
+    let folder = folder();
+    let file = run(folder.path(), "four-bar-a");
+    let figures = folder.path().join("deep/figures");
+    let plotted = plot(&[&file], &figures, &["--format", "svg,png,pdf,svg"]);
+    assert!(plotted.status.success(), "{plotted:?}");
+    let names = files_in(&figures);
+    assert_eq!(names.len() % 3, 0);
+    assert!(names.iter().all(|name| !name.starts_with('.')));
+    let text = String::from_utf8(plotted.stdout).unwrap();
+    assert_eq!(
+        text,
+        format!("{}: {} figures, {} files\n", figures.display(), names.len() / 3, names.len())
+    );
+    for (name, begin) in
+        [("force-A.svg", &b"<svg "[..]), ("force-A.png", b"\x89PNG"), ("force-A.pdf", b"%PDF")]
+    {
+        assert!(std::fs::read(figures.join(name)).unwrap().starts_with(begin), "{name}");
+    }
+}
+
+#[test]
+fn what_exists_stays_without_force_and_then_nothing_is_written() {
+    let folder = folder();
+    let file = run(folder.path(), "four-bar-a");
+    let figures = folder.path().join("figures");
+    std::fs::create_dir(&figures).unwrap();
+    let taken = figures.join("torque-crank.svg");
+    std::fs::write(&taken, "mine").unwrap();
+    let refused = plot(&[&file], &figures, &[]);
+    assert_eq!(refused.status.code(), Some(3), "{refused:?}");
+    assert!(told(&refused).contains("torque-crank.svg exists; --force replaces it"));
+    assert_eq!(files_in(&figures), ["torque-crank.svg"]);
+    assert_eq!(std::fs::read_to_string(&taken).unwrap(), "mine");
+    assert!(plot(&[&file], &figures, &["--force"]).status.success());
+    assert!(std::fs::read_to_string(&taken).unwrap().starts_with("<svg "));
+}
+
+#[test]
+fn figures_can_be_chosen_by_name_and_by_kind() {
+    let folder = folder();
+    let file = run(folder.path(), "four-bar-a");
+    let figures = folder.path().join("figures");
+    assert!(plot(&[&file], &figures, &["--only", "journal-path,force"]).status.success());
+    let expected =
+        ["force-A.svg", "force-A0.svg", "force-B.svg", "force-B0.svg", "journal-path.svg"];
+    assert_eq!(files_in(&figures), expected);
+    let refused = plot(&[&file], &figures, &["--only", "force-C", "--force"]);
+    assert_eq!(refused.status.code(), Some(2), "{refused:?}");
+    assert!(told(&refused).contains("there is no figure \"force-C\" (did you mean \"force-"));
+}
+
+#[test]
+fn the_same_files_give_the_same_bytes_in_every_format() {
+    let folder = folder();
+    let file = run(folder.path(), "four-bar-c");
+    let [once, again] = ["once", "again"].map(|name| folder.path().join(name));
+    for figures in [&once, &again] {
+        assert!(plot(&[&file], figures, &["--format", "svg,png,pdf"]).status.success());
+    }
+    for name in files_in(&once) {
+        let [once, again] =
+            [&once, &again].map(|figures| std::fs::read(figures.join(&name)).unwrap());
+        assert!(once == again, "{name}");
+    }
+}
+
+#[test]
+fn bad_input_ends_with_2_and_a_bad_output_with_3() {
+    let folder = folder();
+    let file = run(folder.path(), "pendulum");
+    let text = folder.path().join("text.h5");
+    std::fs::write(&text, "no result").unwrap();
+    let missing = folder.path().join("missing.h5");
+    let figures = folder.path().join("figures");
+    for (file, more, words) in [
+        (&missing, &[][..], "missing.h5"),
+        (&text, &[], "text.h5"),
+        (&file, &["--over", "angle"], "tells no angle of a drive: it has none"),
+        (&file, &["--drive", "crank"], "it has no drive \"crank\""),
+        (&file, &["--from", "1"], "has no samples from 1 s"),
+        (&file, &["--format", "bmp"], "bmp"),
+        (&file, &["--width", "3"], "number from 40 to 1000"),
+        (&file, &["--section", "NaN"], "must be a number"),
+    ] {
+        let refused = plot(&[file.as_path()], &figures, more);
+        assert_eq!(refused.status.code(), Some(2), "{refused:?}");
+        assert!(told(&refused).contains(words), "{}", told(&refused));
+        assert!(!figures.exists());
+    }
+    let in_the_way = plot(&[&file], &text, &[]);
+    assert_eq!(in_the_way.status.code(), Some(3), "{in_the_way:?}");
+}
+
+/// Opens what a writer makes of a recording.
+fn opened(folder: &Path, name: &str, recorded: &Recorded) -> ResultFile {
+    ResultFile::open(&recorded.write(&folder.join(name), false)).unwrap()
+}
+
+/// Encodes every figure in every format.
+fn encode_all(files: Vec<ResultFile>) -> Vec<String> {
+    let figures = draw(files, &Options::default()).unwrap();
+    for figure in &figures {
+        for format in [Format::Svg, Format::Png, Format::Pdf] {
+            assert!(!figure.encode(format).unwrap().is_empty(), "{}", figure.name);
+        }
+        assert!(!figure.svg.contains("NaN") && !figure.svg.contains("inf"), "{}", figure.name);
+    }
+    figures.into_iter().map(|figure| figure.name).collect()
+}
+
+#[test]
+fn files_of_arbitrary_numbers_one_sample_or_no_events_are_drawn() {
+    let folder = folder();
+    let shapes: [(&[&str], usize, usize); 4] =
+        [(&["A", "B"], 300, 50), (&["A"], 40, 0), (&["B0"], 1, 3), (&[], 20, 0)];
+    for (k, (clearances, samples, events)) in shapes.into_iter().enumerate() {
+        let recorded = Recorded::new(clearances, samples, events);
+        let names = encode_all(vec![opened(folder.path(), &format!("{k}.h5"), &recorded)]);
+        assert!(names.iter().any(|name| name == "energy"));
+        assert_eq!(names.iter().any(|name| name == "journal-path"), !clearances.is_empty());
+    }
+}
+
+#[test]
+fn values_that_are_no_numbers_leave_gaps() {
+    let folder = folder();
+    let mut recorded = Recorded::new(&["A"], 50, 6);
+    for (row, observation) in recorded.observations.iter_mut().enumerate() {
+        let spoilt = if row % 3 == 0 { f64::NAN } else { f64::INFINITY };
+        if row % 2 == 0 {
+            observation.clearances[0].offset = [spoilt; 2];
+            observation.clearances[0].normal_force = spoilt;
+            observation.clearances[0].penetration = spoilt;
+            observation.joints[0].force = [spoilt, 1.0];
+            observation.bodies[1].angular_acceleration = spoilt;
+        }
+        observation.drive_torques[0] = f64::NAN;
+        observation.energy.residual = f64::NEG_INFINITY;
+    }
+    for contact in &mut recorded.contacts {
+        (contact.peak_time, contact.peak_force) = (f64::NAN, f64::NAN);
+    }
+    encode_all(vec![opened(folder.path(), "nan.h5", &recorded)]);
+}
+
+#[test]
+fn a_file_without_samples_or_without_a_readable_case_says_so() {
+    let folder = folder();
+    let empty = opened(folder.path(), "empty.h5", &Recorded::new(&[], 0, 0));
+    assert!(matches!(draw(vec![empty], &Options::default()), Err(Error::NoSamples { .. })));
+    let file = opened(folder.path(), "a.h5", &Recorded::new(&["A"], 9, 0));
+    let over_angle = Options { over: Over::Angle, ..Options::default() };
+    let Err(error @ Error::NoDrive { .. }) = draw(vec![file], &over_angle) else {
+        panic!("the case is no case");
+    };
+    assert!(error.to_string().contains("the case in it cannot be read"), "{error}");
+}
+
+#[test]
+fn runs_of_one_name_are_told_apart_by_their_files() {
+    let folder = folder();
+    let files = ["first", "second"]
+        .map(|name| opened(folder.path(), &format!("{name}.h5"), &Recorded::new(&["A"], 9, 0)));
+    let figures = draw(files.into(), &Options::default()).unwrap();
+    let force = figures.iter().find(|figure| figure.name == "force-A").unwrap();
+    assert!(force.svg.contains("(a)  first, A") && force.svg.contains("(b)  second, A"));
+}
+
+#[test]
+fn certified_digits_are_drawn_where_a_file_has_them() {
+    let folder = folder();
+    let path = Recorded::new(&["A"], 30, 0).write(&folder.path().join("a.h5"), false);
+    let digits: Vec<f64> = (0..30).map(|k| 16.0 - 0.5 * f64::from(k)).collect();
+    for name in ["reference_digits", "run_digits"] {
+        let file = hdf5::File::append(&path).unwrap();
+        file.new_dataset_builder().with_data(&digits).create(name).unwrap();
+    }
+    let figures = draw(vec![ResultFile::open(&path).unwrap()], &Options::default()).unwrap();
+    let figure = figures.iter().find(|figure| figure.name == "digits").unwrap();
+    assert!(figure.svg.contains(">reference<") && figure.svg.contains(">run<"));
+}
