@@ -90,7 +90,7 @@ fn the_force_of_a_joint_with_clearance_peaks_between_the_samples() {
     for (revolution, exact) in force.revolutions.iter().zip(PEAKS_OF_A) {
         let found = revolution.largest.unwrap();
         assert_eq!(found.basis, Basis::Peak);
-        // 7.8 digits at 12 ms, 7.6 at 24 ms (NUMERICS.md)
+        // 7.8 digits at 12 ms, 7.6 at 24 ms (docs/numerics.md)
         assert!((found.value / exact - 1.0).abs() < 1e-6, "{found:?}, not {exact}");
     }
     assert!(summary.unresolved_contacts > 0);
