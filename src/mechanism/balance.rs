@@ -106,17 +106,10 @@ impl<S: Scalar> Mechanism<S> {
         }
         now.matrix.fill(S::zero());
         for coupling in &self.layout.couplings {
-            let Coupling { row, column, sides, at } = *coupling;
+            let Coupling { row, column, sides, at, translation } = *coupling;
             let (a, b) = (&now.jacobian[row][sides[0]], &now.jacobian[column][sides[1]]);
-            let inverse = &self.inverse_masses[at..at + 3];
-            let mut sum = now.matrix[row * m + column];
-            for c in 0..2 {
-                // constants, most of them zero, and a product of 71 digits is dear
-                if a[c] != S::zero() && b[c] != S::zero() {
-                    sum += a[c] * b[c] * inverse[c];
-                }
-            }
-            sum += a[2] * b[2] * inverse[2];
+            let turning = a[2] * b[2] * self.inverse_masses[at + 2];
+            let sum = now.matrix[row * m + column] + translation + turning;
             now.matrix[row * m + column] = sum;
             now.matrix[column * m + row] = sum;
         }

@@ -6,6 +6,7 @@
 
 use crate::joint::{Constraint, Revolute};
 use crate::model::{Complaint, GROUND, KeyPath, Model};
+use crate::plane::Vector;
 use crate::scalar::Scalar;
 
 /// What a body is to the equations.
@@ -47,8 +48,8 @@ pub(super) struct Row<S> {
 }
 
 /// A body with unknowns that two constraint rows share: it couples their multipliers.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Coupling {
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Coupling<S> {
     pub row: usize,
     /// At most `row`.
     pub column: usize,
@@ -56,6 +57,8 @@ pub(super) struct Coupling {
     pub sides: [usize; 2],
     /// Its place in v.
     pub at: usize,
+    /// What its translation adds to the entry (1/kg), wherever it stands.
+    pub translation: S,
 }
 
 /// The unknowns and equations of a model.
@@ -66,7 +69,7 @@ pub(super) struct Layout<S> {
     /// Each after its base.
     pub driven: Vec<DrivenBody>,
     pub constraints: Vec<Row<S>>,
-    pub couplings: Vec<Coupling>,
+    pub couplings: Vec<Coupling<S>>,
     /// Number n of coordinates.
     pub coordinates: usize,
     /// Number m of constraint rows.
@@ -114,7 +117,7 @@ impl<S: Scalar> Layout<S> {
         }
         match complaints.is_empty() {
             true => {
-                let couplings = couplings(&constraints, &roles);
+                let couplings = couplings(&constraints, &roles, model.masses());
                 Ok(Layout { roles, driven, constraints, couplings, coordinates, rows })
             }
             false => Err(complaints),
@@ -129,18 +132,24 @@ impl<S: Scalar> Layout<S> {
 }
 
 /// Which rows share which bodies, lower triangle.
-fn couplings<S: Scalar>(constraints: &[Row<S>], roles: &[Role]) -> Vec<Coupling> {
-    let sides = |constraint: &Row<S>| -> Vec<(usize, usize, usize)> {
-        let bodies = constraint.constraint.bodies().into_iter().enumerate();
-        let rows = constraint.first..constraint.first + constraint.constraint.rows();
-        bodies.flat_map(|(side, body)| rows.clone().map(move |row| (row, side, body))).collect()
-    };
-    let all: Vec<(usize, usize, usize)> = constraints.iter().flat_map(sides).collect();
+fn couplings<S: Scalar>(constraints: &[Row<S>], roles: &[Role], masses: &[S]) -> Vec<Coupling<S>> {
+    let mut all = Vec::new();
+    for row in constraints {
+        for (side, body) in row.constraint.bodies().into_iter().enumerate() {
+            for r in 0..row.constraint.rows() {
+                // the coefficients at ẋ and ẏ do not depend on the arms
+                let block = row.constraint.jacobian(r, &[Vector::zero(); 2])[side];
+                all.push((row.first + r, side, body, Vector::new(block[0], block[1])));
+            }
+        }
+    }
     let mut found = Vec::new();
-    for &(row, side, body) in &all {
+    for &(row, side, body, along) in &all {
         let Role::Free(at) = roles[body] else { continue };
-        for &(column, other, _) in all.iter().filter(|(c, _, b)| *c <= row && *b == body) {
-            found.push(Coupling { row, column, sides: [side, other], at });
+        for &(column, other, _, across) in all.iter().filter(|(c, _, b, _)| *c <= row && *b == body)
+        {
+            let translation = along.dot(across) / masses[body];
+            found.push(Coupling { row, column, sides: [side, other], at, translation });
         }
     }
     found
