@@ -26,7 +26,7 @@ need_packages() {
     echo "setup: installing ${missing[*]}" >&2
     as_root apt-get -qq update </dev/null
     as_root env DEBIAN_FRONTEND=noninteractive apt-get -qq -y --no-install-recommends \
-        -o DPkg::Lock::Timeout=300 install "${missing[@]}" </dev/null >&2
+        -o DPkg::Lock::Timeout=300 install "${missing[@]}" </dev/null >/dev/null
 }
 
 # The toolchain, with the components named.

@@ -106,7 +106,8 @@ impl<S: Scalar> Constraint<S> {
         }
     }
 
-    /// Φ_q of one row: its blocks for bodies `i` and `j`.
+    /// Φ_q of one row: its blocks for bodies `i` and `j`. The coefficients at ẋ and ẏ are constants,
+    /// on which the layout of a mechanism relies.
     #[inline(always)]
     pub fn jacobian(&self, row: usize, arms: &[Vector<S>; 2]) -> [Block<S>; 2] {
         match self {
