@@ -6,11 +6,12 @@
 
 use freeplay::case::{Case, Changes};
 use freeplay::dae::{Count, Engine};
+use freeplay::engine::explicit::Explicit;
 use freeplay::engine::ida::{Ida, Norm, Options};
 use freeplay::mechanism::{Mechanism, Observation};
 use freeplay::model::Model;
 use freeplay::run::{self, Contact, Event, Peak, Progress, Recorder, Schedule};
-use freeplay::simulate::ida_options;
+use freeplay::simulate::{explicit_options, ida_options};
 use nix::sys::resource::{Usage, UsageWho, getrusage};
 use nix::sys::time::TimeValLike;
 use std::convert::Infallible;
@@ -93,7 +94,16 @@ impl Solution {
     }
 }
 
+/// A solution by IDA.
 fn solve(case: &Case, options: Options) -> Outcome<Solution> {
+    solve_by(case, options.relative_tolerance, |mechanism| Ida::new(mechanism, options))
+}
+
+fn solve_by<E: Engine<f64, System = Mechanism<f64>>>(
+    case: &Case,
+    tolerance: f64,
+    engine_for: impl Fn(Mechanism<f64>) -> Result<E, E::Error>,
+) -> Outcome<Solution> {
     let schedule = Schedule::new(&case.plan.duration, &case.plan.duration);
     let mut solution = Solution { cost: Cost::NONE, counts: Vec::new(), contacts: 0 };
     for _ in 0..RUNS {
@@ -104,8 +114,7 @@ fn solve(case: &Case, options: Options) -> Outcome<Solution> {
                 solution.contacts = progress.contacts;
                 ControlFlow::Continue(())
             };
-            let tolerance = options.relative_tolerance;
-            let mut engine = Ida::new(mechanism, options)?;
+            let mut engine = engine_for(mechanism)?;
             run::run(&mut engine, &schedule, tolerance, &mut Nothing, &mut watch)?;
             solution.counts = engine.counts();
             Ok(())
@@ -178,6 +187,17 @@ fn main() -> Outcome<()> {
             if norm == ida_options(&case.plan.solver).norm {
                 alone.push(Some(own.cost));
             }
+        }
+    }
+    println!("\nThe explicit engine alone, 60 ms:");
+    println!("{:<16}{:>12}{:>9}{:>9}", "case", "tolerance", "steps", "CPU (s)");
+    for path in &paths[1..] {
+        let case = read(path)?;
+        for tolerance in [1e-12, 1e-14] {
+            let options = explicit_options(&case.plan.solver, tolerance);
+            let own = solve_by(&case, tolerance, |mechanism| Explicit::new(mechanism, options))?;
+            let steps = own.count("steps");
+            println!("{:<16}{tolerance:>12e}{steps:>9}{:>9.4}", case.name, own.cost.cpu);
         }
     }
     println!("\nThe whole command, 6001 samples:");

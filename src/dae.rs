@@ -12,6 +12,7 @@
 //! Between two events the modes stand still and everything here is smooth, but for the power law
 //! that [`Watch::power`] tells of.
 
+use crate::plane::Vector;
 use crate::scalar::Scalar;
 use std::error::Error;
 
@@ -44,9 +45,19 @@ pub struct State<'a, S> {
     pub q: &'a [S],
     /// Velocities, n of them (m/s, rad/s).
     pub v: &'a [S],
-    /// Cosines and sines of the turning frames, where an engine carries them along; `None` has
-    /// the system compute them from the angles.
-    pub turns: Option<&'a [Turn<S>]>,
+    /// What an engine carries along; `None` has the system compute it from time and coordinates.
+    pub carried: Option<Carried<'a, S>>,
+}
+
+/// Functions of time and coordinates that an engine may carry along with the state, as components
+/// with rates of their own.
+#[derive(Debug, Clone, Copy)]
+pub struct Carried<'a, S> {
+    /// Cosines and sines of the turning frames.
+    pub turns: &'a [Turn<S>],
+    /// The offsets (m): small differences of large coordinates, which keep the places that the
+    /// difference loses. Empty where the system is to take the differences.
+    pub offsets: &'a [Vector<S>],
 }
 
 /// The way through zero at which an event function is an event.
@@ -133,6 +144,21 @@ pub trait System<S: Scalar> {
 
     /// Angular rates (rad/s) of the turning frames.
     fn turn_rates(&self, time: S, v: &[S], rates: &mut [S]);
+
+    /// Number of offsets that an engine may carry along.
+    fn offsets(&self) -> usize {
+        0
+    }
+
+    /// The offsets (m) at a state, from its coordinates and turns.
+    fn offsets_at(&mut self, state: State<'_, S>, offsets: &mut [Vector<S>]) {
+        let _ = (state, offsets);
+    }
+
+    /// Rates of the offsets (m/s) at the state last evaluated.
+    fn offset_rates(&self, rates: &mut [Vector<S>]) {
+        let _ = rates;
+    }
 }
 
 /// A system that an implicit engine can solve: y = (q, v, λ) in double precision.

@@ -249,7 +249,7 @@ where
 }
 
 /// How the explicit engine is to solve, from the plan of a case.
-fn explicit_options(plan: &SolverPlan, tolerance: f64) -> explicit::Options {
+pub fn explicit_options(plan: &SolverPlan, tolerance: f64) -> explicit::Options {
     explicit::Options { tolerance, max_step: plan.max_step, ..explicit::Options::default() }
 }
 

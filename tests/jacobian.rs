@@ -4,9 +4,10 @@
 mod simulated;
 
 use freeplay::clearance::{Contact, Mode};
-use freeplay::dae::{Dae, System};
+use freeplay::dae::{Dae, State, System};
 use freeplay::mechanism::Mechanism;
 use freeplay::model::Model;
+use freeplay::plane::Vector;
 use freeplay::scalar::{Dual64, Scalar};
 use nalgebra::DMatrix;
 use simulated::{case, root};
@@ -163,4 +164,30 @@ fn a_wrong_column_would_be_noticed() {
     assert!(std::panic::catch_unwind(|| assert_agreement("", &wrong, &exact)).is_err());
     wrong[(1, 1)] = exact[(1, 1)];
     assert_agreement("", &wrong, &exact);
+}
+
+#[test]
+fn rates_of_the_offsets_are_the_derivatives_of_the_offsets() {
+    let description = case("cases/four-bar-c.toml", &[]).description;
+    let mut real = Mechanism::<f64>::new(Model::new(&description).unwrap()).unwrap();
+    let mut dual = Mechanism::<Dual64>::new(Model::new(&description).unwrap()).unwrap();
+    let (n, count) = (real.coordinates(), real.offsets());
+    assert_eq!(count, 3);
+    let mut numbers = Numbers(2026);
+    for _ in 0..20 {
+        let Trial { t, y, .. } = Trial::new(&real, &mut numbers);
+        let (q, v) = (&y[..n], &y[n..2 * n]);
+        let along: Vec<Dual64> = q.iter().zip(v).map(|(q, v)| Dual64::new(*q, *v)).collect();
+        let rest = vec![Dual64::from_re(0.0); n];
+        let state = State { time: Dual64::new(t, 1.0), q: &along, v: &rest, carried: None };
+        let mut offsets = vec![Vector::zero(); count];
+        dual.offsets_at(state, &mut offsets);
+        real.evaluate(State { time: t, q, v, carried: None }).unwrap();
+        let mut rates = vec![Vector::zero(); count];
+        real.offset_rates(&mut rates);
+        for (offset, rate) in offsets.iter().zip(&rates) {
+            let off = (offset.x.eps - rate.x).abs().max((offset.y.eps - rate.y).abs());
+            assert!(off < 1e-13 * 30.0, "off by {off:e} m/s");
+        }
+    }
 }

@@ -60,13 +60,22 @@ pub struct GapSlopes<S> {
 }
 
 impl<S: Scalar> Clearance<S> {
-    /// The journal in its bearing, from poses and motions by body.
+    /// The journal in its bearing, from poses and motions by body. An offset that is carried takes
+    /// the place of the difference of positions.
     #[inline(always)]
-    pub fn gap(&self, poses: &[Pose<S>], motions: &[Motion<S>]) -> Gap<S> {
+    pub fn gap(
+        &self,
+        poses: &[Pose<S>],
+        motions: &[Motion<S>],
+        carried: Option<Vector<S>>,
+    ) -> Gap<S> {
         let (i, j) = (self.pair.i, self.pair.j);
         let arm_i = poses[i].rotate(self.pair.s_i);
         let arm_j = poses[j].rotate(self.pair.s_j);
-        let offset = poses[j].position + arm_j - poses[i].position - arm_i;
+        let offset = match carried {
+            Some(offset) => offset,
+            None => poses[j].position + arm_j - poses[i].position - arm_i,
+        };
         let offset_rate = motions[j].at(arm_j) - motions[i].at(arm_i);
         let eccentricity = offset.norm();
         Gap { arm_i, arm_j, offset, offset_rate, eccentricity, depth: eccentricity - self.radial }

@@ -22,7 +22,7 @@ impl<S: Scalar> Mechanism<S> {
                 now.touches[k] = None;
                 continue;
             };
-            let mut gap = clearance.gap(&now.poses, &now.motions);
+            let mut gap = now.gap(k, clearance);
             let rates = clearance.rates(&gap, &now.motions);
             let root = roots.get(self.depth_slots[k]).copied().flatten();
             let root = root.map(|sigma| sigma * self.radial_roots[k]);

@@ -44,7 +44,7 @@ impl<S: Scalar> Mechanism<S> {
     /// Places the bodies at (q, v) of `y`, with the accelerations of `yp` and λ of `y`.
     fn stand(&mut self, t: S, y: &[S], yp: &[S]) {
         let n = self.layout.coordinates;
-        self.place(&State { time: t, q: &y[..n], v: &y[n..2 * n], turns: None });
+        self.place(&State { time: t, q: &y[..n], v: &y[n..2 * n], carried: None });
         self.reach();
         self.now.lambda.copy_from_slice(&y[2 * n..]);
         for (body, role) in self.layout.roles.iter().enumerate() {

@@ -59,6 +59,8 @@ struct Evaluation<S> {
     time: S,
     poses: Vec<Pose<S>>,
     motions: Vec<Motion<S>>,
+    /// Offsets of the journals, by clearance, where an engine carries them; else empty.
+    offsets: Vec<Vector<S>>,
     accelerations: Vec<Motion<S>>,
     /// Loads, contact forces and, once solved, joint forces, by body.
     wrenches: Vec<Wrench<S>>,
@@ -86,6 +88,7 @@ impl<S: Scalar> Evaluation<S> {
             time: S::zero(),
             poses: vec![Pose::fixed(); bodies],
             motions: vec![Motion::rest(); bodies],
+            offsets: Vec::with_capacity(clearances),
             accelerations: vec![Motion::rest(); bodies],
             wrenches: vec![Wrench::none(); bodies],
             touches: vec![None; clearances],
@@ -97,6 +100,14 @@ impl<S: Scalar> Evaluation<S> {
             matrix: vec![S::zero(); layout.rows * layout.rows],
             driving: vec![(Vector::zero(), S::zero()); layout.driven.len()],
         }
+    }
+}
+
+impl<S: Scalar> Evaluation<S> {
+    /// The journal of clearance `k` in its bearing.
+    #[inline(always)]
+    fn gap(&self, k: usize, clearance: &Clearance<S>) -> Gap<S> {
+        clearance.gap(&self.poses, &self.motions, self.offsets.get(k).copied())
     }
 }
 
@@ -208,7 +219,7 @@ impl<S: Scalar> Mechanism<S> {
     pub fn switch(&mut self, slot: usize) {
         let (k, what) = self.slots[slot];
         let clearance = &self.model.clearances()[k];
-        let gap = clearance.gap(&self.now.poses, &self.now.motions);
+        let gap = self.now.gap(k, clearance);
         let mode =
             clearance.switched(&self.modes[k], what, || clearance.rates(&gap, &self.now.motions));
         self.set_mode(k, mode);

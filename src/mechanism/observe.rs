@@ -37,8 +37,8 @@ impl<S: Scalar> Mechanism<S> {
             let state = [at.x, at.y, pose.angle, going.x, going.y, motion.angular];
             beyond.extend(state.map(S::beyond));
         }
-        for clearance in self.model.clearances() {
-            let offset = clearance.gap(&self.now.poses, &self.now.motions).offset;
+        for (k, clearance) in self.model.clearances().iter().enumerate() {
+            let offset = self.now.gap(k, clearance).offset;
             beyond.extend([offset.x, offset.y].map(S::beyond));
         }
         beyond
@@ -59,7 +59,7 @@ impl<S: Scalar> Mechanism<S> {
 
     fn observe_clearance(&self, k: usize) -> ClearanceObservation {
         let law = &self.model.clearances()[k];
-        let gap = law.gap(&self.now.poses, &self.now.motions);
+        let gap = self.now.gap(k, law);
         let (rate, slip) = self.gap_rates(k);
         let force = self.now.touches[k].as_ref().map(|touch| touch.force);
         ClearanceObservation {

@@ -11,12 +11,15 @@ impl<S: Scalar> Mechanism<S> {
     #[inline(always)]
     pub(super) fn place(&mut self, state: &State<'_, S>) {
         self.now.time = state.time;
-        self.place_driven(state.time, state.turns);
+        let turns = state.carried.map(|carried| carried.turns);
+        self.now.offsets.clear();
+        self.now.offsets.extend(state.carried.iter().flat_map(|carried| carried.offsets));
+        self.place_driven(state.time, turns);
         for (body, role) in self.layout.roles.iter().enumerate() {
             let Role::Free(at) = *role else { continue };
             let (q, v) = (&state.q[at..at + 3], &state.v[at..at + 3]);
             let position = Vector::new(q[0], q[1]);
-            self.now.poses[body] = match state.turns {
+            self.now.poses[body] = match turns {
                 Some(turns) => turned(position, q[2], turns[body - 1]),
                 None => Pose::new(position, q[2]),
             };

@@ -43,7 +43,7 @@ impl<S: Scalar> Mechanism<S> {
         let mut drift = None;
         let mut last = S::from_f64(f64::INFINITY);
         for _ in 0..MOST_ITERATIONS {
-            self.place(&State { time, q, v, turns: None });
+            self.place(&State { time, q, v, carried: None });
             let error = self.position_errors();
             drift.get_or_insert(error.to_f64());
             // below `good` there is nothing but rounding; no gain means the same
@@ -57,7 +57,7 @@ impl<S: Scalar> Mechanism<S> {
             last = error;
             self.correct(q)?;
         }
-        self.place(&State { time, q, v, turns: None });
+        self.place(&State { time, q, v, carried: None });
         self.check_closed()?;
         self.velocity_errors();
         self.correct(v)?;

@@ -74,7 +74,7 @@ impl<S: Scalar> Mechanism<S> {
         self.start.q.copy_from_slice(q);
         self.start.v.copy_from_slice(v);
         self.set_scales(q, v);
-        let state = State { time: S::zero(), q, v, turns: None };
+        let state = State { time: S::zero(), q, v, carried: None };
         self.place(&state);
         self.choose_start_modes();
         self.evaluate(state).map_err(start_fault)?;
@@ -183,7 +183,7 @@ impl<S: Scalar> Mechanism<S> {
 
     fn position_conditions(&mut self, q: &[S], fixed: &[Fixed<S>]) -> Conditions<S> {
         let rest = vec![S::zero(); q.len()];
-        self.place(&State { time: S::zero(), q, v: &rest, turns: None });
+        self.place(&State { time: S::zero(), q, v: &rest, carried: None });
         let weights = self.weights(|start| start.coordinates);
         let at = |k: usize| q[k];
         self.conditions(weights, fixed, at, |row, error| {
@@ -238,7 +238,7 @@ impl<S: Scalar> Mechanism<S> {
     /// Complains of every joint that does not close and every key that does not hold.
     fn check_positions(&mut self, q: &[S]) -> Result<(), Vec<Complaint>> {
         let rest = vec![S::zero(); q.len()];
-        self.place(&State { time: S::zero(), q, v: &rest, turns: None });
+        self.place(&State { time: S::zero(), q, v: &rest, carried: None });
         let allowed = 1e-9 * self.length;
         let mut complaints = Vec::new();
         for row in &self.layout.constraints {
@@ -295,8 +295,9 @@ impl<S: Scalar> Mechanism<S> {
         let joints = self.model.joints().iter().enumerate();
         joints
             .filter_map(|(index, joint)| {
-                let clearance = &self.model.clearances()[joint.clearance?];
-                let gap = clearance.gap(&self.now.poses, &self.now.motions);
+                let k = joint.clearance?;
+                let clearance = &self.model.clearances()[k];
+                let gap = self.now.gap(k, clearance);
                 (gap.depth > S::zero()).then(|| Complaint {
                     key: key(&self.model, Origin::Joint(index)),
                     message: format!(
@@ -324,7 +325,7 @@ impl<S: Scalar> Mechanism<S> {
         let mut v = self.named(|start| start.velocities);
         // the problem is linear; repeating it removes what SLACK and rounding leave
         for step in 0..2 * LAST_STEPS {
-            self.place(&State { time: S::zero(), q, v: &v, turns: None });
+            self.place(&State { time: S::zero(), q, v: &v, carried: None });
             let weights = self.weights(|start| start.velocities);
             let mut conditions = self.conditions(
                 weights,
@@ -349,7 +350,7 @@ impl<S: Scalar> Mechanism<S> {
     /// Typical sizes from the start: angles 1 rad; lengths the largest arm; rates the largest of
     /// any body, or, where all are at rest, one radian a second.
     fn set_scales(&mut self, q: &[S], v: &[S]) {
-        self.place(&State { time: S::zero(), q, v, turns: None });
+        self.place(&State { time: S::zero(), q, v, carried: None });
         let largest = |of: &dyn Fn(&crate::plane::Motion<S>) -> S| {
             self.now.motions.iter().map(|m| of(m).abs().to_f64()).fold(0.0, f64::max)
         };

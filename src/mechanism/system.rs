@@ -5,6 +5,7 @@ use super::layout::Role;
 use crate::clearance::Mode;
 use crate::dae::{Fault, State, System, Watch};
 use crate::linear::Singular;
+use crate::plane::Vector;
 use crate::scalar::Scalar;
 
 /// The mechanism cannot be solved where it stands.
@@ -82,10 +83,10 @@ impl<S: Scalar> System<S> for Mechanism<S> {
 
     fn event_values(&mut self, state: State<'_, S>, values: &mut [S]) -> Result<(), Fault> {
         self.place(&state);
-        let (poses, motions) = (&self.now.poses, &self.now.motions);
+        let motions = &self.now.motions;
         let mut at = 0;
         for (k, clearance) in self.model.clearances().iter().enumerate() {
-            let gap = clearance.gap(poses, motions);
+            let gap = self.now.gap(k, clearance);
             while let Some((_, slot)) = self.slots.get(at).filter(|(owner, _)| *owner == k) {
                 values[at] = clearance
                     .event_value(&self.modes[k], *slot, &gap, || clearance.rates(&gap, motions));
@@ -102,7 +103,7 @@ impl<S: Scalar> System<S> for Mechanism<S> {
         let (gap, rates) = match &now.touches[k] {
             Some(touch) => (touch.gap, touch.rates),
             None => {
-                let gap = clearance.gap(&now.poses, &now.motions);
+                let gap = now.gap(k, clearance);
                 (gap, clearance.rates(&gap, &now.motions))
             }
         };
@@ -127,6 +128,31 @@ impl<S: Scalar> System<S> for Mechanism<S> {
 
     fn turn_rates(&self, _time: S, v: &[S], rates: &mut [S]) {
         self.angular_rates(v, rates);
+    }
+
+    fn offsets(&self) -> usize {
+        self.modes.len()
+    }
+
+    fn offsets_at(&mut self, state: State<'_, S>, offsets: &mut [Vector<S>]) {
+        self.place(&state);
+        // a difference that is nothing but rounding is that of a centred journal
+        let rounding = 4.0 * S::EPSILON * self.length;
+        for ((k, clearance), offset) in self.model.clearances().iter().enumerate().zip(offsets) {
+            let gap = self.now.gap(k, clearance);
+            let centred = gap.eccentricity.to_f64() <= rounding && !S::CARRIES_DERIVATIVE;
+            *offset = if centred { Vector::zero() } else { gap.offset };
+        }
+    }
+
+    fn offset_rates(&self, rates: &mut [Vector<S>]) {
+        let now = &self.now;
+        for ((k, clearance), rate) in self.model.clearances().iter().enumerate().zip(rates) {
+            *rate = match &now.touches[k] {
+                Some(touch) => touch.gap.offset_rate,
+                None => now.gap(k, clearance).offset_rate,
+            };
+        }
     }
 }
 
@@ -170,7 +196,7 @@ impl<S: Scalar> Mechanism<S> {
     /// where the centres coincide.
     pub fn gap_rates(&self, clearance: usize) -> (S, S) {
         let law = &self.model.clearances()[clearance];
-        let gap = law.gap(&self.now.poses, &self.now.motions);
+        let gap = self.now.gap(clearance, law);
         if gap.eccentricity == S::zero() {
             return (S::zero(), S::zero());
         }
@@ -190,7 +216,7 @@ impl<S: Scalar> Mechanism<S> {
     pub(super) fn choose_start_modes(&mut self) {
         for k in 0..self.modes.len() {
             let law = &self.model.clearances()[k];
-            let gap = law.gap(&self.now.poses, &self.now.motions);
+            let gap = self.now.gap(k, law);
             let rates = law.rates(&gap, &self.now.motions);
             let touching =
                 gap.depth > S::zero() || (gap.depth == S::zero() && rates.rate > S::zero());

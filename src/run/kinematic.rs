@@ -146,7 +146,7 @@ fn reach<S: Scalar>(
     let Snapshot { time: then, q, v, .. } = state;
     let span = time - *then;
     if span != S::zero() {
-        mechanism.evaluate(State { time: *then, q, v, turns: None })?;
+        mechanism.evaluate(State { time: *then, q, v, carried: None })?;
         for (k, a) in mechanism.accelerations().iter().enumerate() {
             q[k] += span * (v[k] + span * *a * S::ratio(1, 2));
             v[k] += span * *a;
@@ -154,7 +154,7 @@ fn reach<S: Scalar>(
     }
     mechanism.project(time, q, v)?;
     *then = time;
-    mechanism.evaluate(State { time, q, v, turns: None })
+    mechanism.evaluate(State { time, q, v, carried: None })
 }
 
 #[cfg(test)]

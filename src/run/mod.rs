@@ -223,7 +223,7 @@ where
     /// Evaluates the system at the state in `scratch`.
     fn evaluate(&mut self) -> Outcome<(), S, E, R> {
         let Snapshot { time, q, v, .. } = &self.scratch;
-        let state = State { time: *time, q, v, turns: None };
+        let state = State { time: *time, q, v, carried: None };
         let evaluated = self.engine.system().evaluate(state);
         evaluated.map_err(|source| Error::System { time: self.scratch.time.to_f64(), source })
     }

@@ -1,7 +1,7 @@
 //! The equations as the steppers see them: one vector y, one independent variable τ.
 //!
 //! ```text
-//! y = (q, v, cos and sin of the turning frames, t, σ of each root carried, integrals)
+//! y = (q, v, cos and sin of the turning frames, offsets, t, σ of each root carried, integrals)
 //! ```
 //!
 //! While a contact with |δ|^p forces lasts, the solution is not analytic in t at either end of it,
@@ -18,7 +18,8 @@
 //! number of contacts at once. Where two roots are zero together the flow stands still, and it
 //! creeps where they tend to zero together; the engine steps over both.
 
-use crate::dae::{Direction, Fault, State, System, Turn, Watch};
+use crate::dae::{Carried, Direction, Fault, State, System, Turn, Watch};
+use crate::plane::Vector;
 use crate::scalar::Scalar;
 
 /// A root σ that is carried: the event function `function` is σ^degree.
@@ -82,15 +83,18 @@ pub(super) struct Flow<S, Y> {
     turns: Vec<Turn<S>>,
     turn_rates: Vec<S>,
     angles: Vec<S>,
+    offsets: Vec<Vector<S>>,
+    offset_rates: Vec<Vector<S>>,
     values: Vec<S>,
     notes: Vec<Note>,
     notes_used: usize,
 }
 
 impl<S: Scalar, Y: System<S>> Flow<S, Y> {
-    /// A flow without roots.
+    /// A flow without roots. Numbers of many digits need no offsets carried.
     pub fn new(system: Y) -> Self {
         let (frames, functions) = (system.turns(), system.watches().len());
+        let offsets = if S::EPSILON >= f64::EPSILON { system.offsets() } else { 0 };
         let turn = Turn { cos: S::one(), sin: S::zero() };
         Flow {
             coordinates: system.coordinates(),
@@ -104,6 +108,8 @@ impl<S: Scalar, Y: System<S>> Flow<S, Y> {
             turns: vec![turn; frames],
             turn_rates: vec![S::zero(); frames],
             angles: vec![S::zero(); frames],
+            offsets: vec![Vector::zero(); offsets],
+            offset_rates: vec![Vector::zero(); offsets],
             values: vec![S::zero(); functions],
             notes: Vec::new(),
             notes_used: 0,
@@ -122,9 +128,14 @@ impl<S: Scalar, Y: System<S>> Flow<S, Y> {
         2 * self.coordinates
     }
 
+    /// Index of the first offset.
+    pub fn first_offset(&self) -> usize {
+        2 * (self.coordinates + self.frames)
+    }
+
     /// Index of the time.
     pub fn time(&self) -> usize {
-        2 * (self.coordinates + self.frames)
+        self.first_offset() + 2 * self.offsets.len()
     }
 
     /// Index of the root in `slot`.
@@ -187,40 +198,69 @@ impl<S: Scalar, Y: System<S>> Flow<S, Y> {
         }
     }
 
-    fn load_turns(&mut self, y: &[S]) {
-        let first = self.first_turn();
-        for (turn, pair) in self.turns.iter_mut().zip(y[first..].chunks_exact(2)) {
+    /// Sets the offsets from coordinates and turns.
+    pub fn reset_offsets(&mut self, y: &mut [S]) {
+        let (n, first) = (self.coordinates, self.first_offset());
+        self.load(y);
+        let carried = Some(Carried { turns: &self.turns, offsets: &[] });
+        let state = State { time: y[self.time()], q: &y[..n], v: &y[n..2 * n], carried };
+        self.system.offsets_at(state, &mut self.offsets);
+        for (offset, pair) in self.offsets.iter().zip(y[first..].chunks_exact_mut(2)) {
+            pair.copy_from_slice(&[offset.x, offset.y]);
+        }
+    }
+
+    /// Takes turns and offsets from y.
+    fn load(&mut self, y: &[S]) {
+        let (first_turn, first_offset) = (self.first_turn(), self.first_offset());
+        for (turn, pair) in self.turns.iter_mut().zip(y[first_turn..].chunks_exact(2)) {
             *turn = Turn { cos: pair[0], sin: pair[1] };
+        }
+        for (offset, pair) in self.offsets.iter_mut().zip(y[first_offset..].chunks_exact(2)) {
+            *offset = Vector::new(pair[0], pair[1]);
         }
     }
 
     /// Evaluates the system at q, v, t and the turns of y alone, for its event rates.
     pub fn evaluate_without_roots(&mut self, y: &[S]) -> Result<(), Fault> {
         self.evaluations += 1;
-        self.load_turns(y);
+        self.load(y);
         let n = self.coordinates;
         let (q, v) = (&y[..n], &y[n..2 * n]);
-        let state = State { time: y[self.time()], q, v, turns: Some(&self.turns) };
+        let state = State {
+            time: y[self.time()],
+            q,
+            v,
+            carried: Some(Carried { turns: &self.turns, offsets: &self.offsets }),
+        };
         self.system.evaluate(state)
     }
 
     /// Evaluates the system at y; everything below answers for it.
     pub fn evaluate(&mut self, y: &[S]) -> Result<(), Fault> {
         self.evaluations += 1;
-        self.load_turns(y);
+        self.load(y);
         let (n, time) = (self.coordinates, y[self.time()]);
         let (q, v) = (&y[..n], &y[n..2 * n]);
         self.system.turn_rates(time, v, &mut self.turn_rates);
-        let state = State { time, q, v, turns: Some(&self.turns) };
+        let state = State {
+            time,
+            q,
+            v,
+            carried: Some(Carried { turns: &self.turns, offsets: &self.offsets }),
+        };
         if self.roots.is_empty() {
             self.pace = S::one();
-            return self.system.evaluate(state);
+            self.system.evaluate(state)?;
+            self.system.offset_rates(&mut self.offset_rates);
+            return Ok(());
         }
-        let first = 2 * (n + self.frames) + 1;
+        let first = self.time() + 1;
         for (root, sigma) in self.roots.iter().zip(&y[first..]) {
             self.root_values[root.function] = Some(*sigma);
         }
         self.system.evaluate_with_roots(state, &self.root_values)?;
+        self.system.offset_rates(&mut self.offset_rates);
         self.pace = self.pace_at(y);
         for slot in 0..self.roots.len() {
             let root = self.roots[slot];
@@ -283,6 +323,11 @@ impl<S: Scalar, Y: System<S>> Flow<S, Y> {
             put(2 * (n + j), -(rate * turn.sin));
             put(2 * (n + j) + 1, rate * turn.cos);
         }
+        let first = self.first_offset();
+        for (j, rate) in self.offset_rates.iter().enumerate() {
+            put(first + 2 * j, paced * rate.x);
+            put(first + 2 * j + 1, paced * rate.y);
+        }
         put(time, paced);
         for (slot, rate) in self.root_rates[..self.roots.len()].iter().enumerate() {
             put(time + 1 + slot, scale * *rate);
@@ -314,10 +359,15 @@ impl<S: Scalar, Y: System<S>> Flow<S, Y> {
 
     /// Event functions at y, as the system has them.
     pub fn event_values(&mut self, y: &[S]) -> Result<&[S], Fault> {
-        self.load_turns(y);
+        self.load(y);
         let n = self.coordinates;
         let (q, v) = (&y[..n], &y[n..2 * n]);
-        let state = State { time: y[self.time()], q, v, turns: Some(&self.turns) };
+        let state = State {
+            time: y[self.time()],
+            q,
+            v,
+            carried: Some(Carried { turns: &self.turns, offsets: &self.offsets }),
+        };
         self.system.event_values(state, &mut self.values)?;
         Ok(&self.values)
     }

@@ -6,8 +6,10 @@
 //! - **Steps**: an eighth-order Runge–Kutta method in double precision, extrapolation of the
 //!   midpoint rule with as many columns as pay otherwise. Both work on the vector of `flow.rs`,
 //!   in which contacts are analytic from end to end. Cosines and sines of the turning frames are
-//!   components, set anew from the angles at each step's begin. What rounding takes from a sum
-//!   of state and increment is kept and added to the next.
+//!   components, set anew from the angles at each step's begin. So are, in double precision, the
+//!   offsets of the journals: as differences of coordinates a hundred times larger they would lose
+//!   two places. What rounding takes from a sum of state and increment is kept and added to the
+//!   next.
 //! - **Events** are met by steps that end on them: Newton on the length of the step, with partial
 //!   steps that grow as accurate as the iteration needs them. No interpolant comes near the state.
 //!   Rates at places within a step tell of events that begin and end inside it; partial steps
@@ -192,7 +194,7 @@ impl<S: Scalar, Y: System<S>> Explicit<S, Y> {
     fn arrive(&mut self) -> Result<(), Fault> {
         let (flow, here) = (&mut self.flow, &mut self.here);
         flow.reset_turns(&mut here.y);
-        let turns = flow.first_turn()..flow.time();
+        let turns = flow.first_turn()..flow.first_offset();
         here.low[turns].fill(S::zero());
         flow.approaches(&here.y, &mut here.approaches)?;
         flow.rates(&here.y, &mut here.rates)?;
@@ -252,14 +254,17 @@ impl<S: Scalar, Y: System<S>> Explicit<S, Y> {
     }
 
     /// Puts q, v, t and the integrals of a snapshot into `here`; where they are those of the last
-    /// step's end, what rounding left out of them is kept.
-    fn put(&mut self, now: &Snapshot<S>) {
+    /// step's end, what rounding left out of them is kept. Returns whether q or t are others.
+    fn put(&mut self, now: &Snapshot<S>) -> bool {
         let n = self.flow.coordinates();
         let time = self.flow.time();
         let here = &mut self.here;
+        // equal values may have other derivatives
+        let mut moved = S::CARRIES_DERIVATIVE;
         let mut set = |i: usize, value: S| {
             if here.y[i] != value {
                 here.low[i] = S::zero();
+                moved |= i < n || i == time;
             }
             // equal or not: numbers that carry more than a value compare by the value alone
             here.y[i] = value;
@@ -274,6 +279,7 @@ impl<S: Scalar, Y: System<S>> Explicit<S, Y> {
             here.y[first + i] = *value;
             here.low[first + i] = S::zero();
         }
+        moved
     }
 
     /// The step itself, from `from`; leaves its end in `here`.
@@ -355,7 +361,9 @@ impl<S: Scalar, Y: System<S>> Explicit<S, Y> {
 fn sizes_of<S: Scalar, Y: System<S>>(flow: &Flow<S, Y>) -> Vec<f64> {
     let (q, v) = flow.system.scales();
     let mut sizes = [q, v].concat();
-    sizes.resize(flow.time(), 1.0);
+    sizes.resize(flow.first_offset(), 1.0);
+    // offsets follow the coordinates, whose errors are theirs
+    sizes.resize(flow.time(), f64::INFINITY);
     sizes.push(q.iter().zip(v).map(|(q, v)| q / v).fold(f64::INFINITY, f64::min));
     sizes
 }
@@ -375,13 +383,13 @@ impl<S: Scalar, Y: System<S>> Engine<S> for Explicit<S, Y> {
         }
         let goes_on = self.tally.restarts > 0 && now.time == self.now.time;
         self.tally.restarts += 1;
-        self.put(now);
+        let moved = self.put(now);
         if !goes_on {
             self.fired.fill(false);
             self.idle = 0;
         }
         self.now.clone_from(now);
-        self.begin(goes_on).map_err(|fault| self.fault(fault))?;
+        self.begin(goes_on, moved).map_err(|fault| self.fault(fault))?;
         let mut hasher = DefaultHasher::new();
         for watch in self.flow.system.watches() {
             (watch.direction as u8).hash(&mut hasher);
@@ -521,9 +529,15 @@ impl<S: Scalar, Y: System<S>> Explicit<S, Y> {
         quintic_root(end(&self.from), end(&self.here))
     }
 
-    /// Decides on the roots to carry, evaluates the system here, and arms the events.
-    fn begin(&mut self, goes_on: bool) -> Result<(), Fault> {
+    /// Decides on the roots to carry, evaluates the system here, and arms the events. Offsets that
+    /// were carried to where q still is keep the places they have gained.
+    fn begin(&mut self, goes_on: bool, moved: bool) -> Result<(), Fault> {
         self.flow.reset_turns(&mut self.here.y);
+        if moved || !goes_on {
+            self.flow.reset_offsets(&mut self.here.y);
+            let offsets = self.flow.first_offset()..self.flow.time();
+            self.here.low[offsets].fill(S::zero());
+        }
         self.flow.evaluate_without_roots(&self.here.y)?;
         let mut roots = self.roots_from_here(goes_on)?;
         self.part_roots(&mut roots);

@@ -184,7 +184,7 @@ impl<Y: Dae> Ida<Y> {
     /// Evaluates the system at `self.now`.
     fn evaluate(&mut self) -> Result<(), Error> {
         let Snapshot { time, q, v, .. } = &self.now;
-        let state = State { time: *time, q, v, turns: None };
+        let state = State { time: *time, q, v, carried: None };
         let evaluated = self.solver.system().evaluate(state);
         evaluated.map_err(|source| Error::System { time: *time, source })
     }
@@ -229,7 +229,7 @@ impl<Y: Dae> Ida<Y> {
         for (time, weight) in self.quadrature.looks(self.began.time, until) {
             let y = self.solver.interpolate(time)?[..2 * n].to_vec();
             let (q, v) = y.split_at(n);
-            let evaluated = self.solver.system().evaluate(State { time, q, v, turns: None });
+            let evaluated = self.solver.system().evaluate(State { time, q, v, carried: None });
             evaluated.map_err(|source| Error::System { time, source })?;
             let powers = self.solver.system_ref().powers();
             gained.iter_mut().zip(powers).for_each(|(gained, power)| *gained += weight * power);

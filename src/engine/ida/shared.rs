@@ -127,7 +127,7 @@ impl<Y: Dae> Shared<Y> {
     pub(super) fn roots(&mut self, time: f64, y: &[f64], values: &mut [f64]) -> Result<(), Fault> {
         self.calls.roots += 1;
         let n = self.system.coordinates();
-        let state = State { time, q: &y[..n], v: &y[n..2 * n], turns: None };
+        let state = State { time, q: &y[..n], v: &y[n..2 * n], carried: None };
         let evaluated = self.system.event_values(state, values);
         values
             .iter_mut()

@@ -131,7 +131,7 @@ impl<S: Scalar> System<S> for Pendulum<S> {
             self.accelerations[0] = -(lambda * q[0]);
             self.accelerations[1] = -S::one() - lambda * q[1];
         } else {
-            let turn = state.turns.map_or_else(|| turn_of(q[0]), |turns| turns[0]);
+            let turn = state.carried.map_or_else(|| turn_of(q[0]), |carried| carried.turns[0]);
             self.accelerations[0] = -turn.sin;
         }
         Ok(())
