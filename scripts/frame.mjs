@@ -1,6 +1,5 @@
-// A frame of a report page's animation as a picture: `node frame.mjs PAGE HASH PICTURE`. HASH is a
-// link to the moment, as the page gives it (`#t=12.53&run=four-bar-c`). The page is read from the
-// disk, in Debian's chromium; PICTURE is a PNG.
+// A frame of a report page's animation, as a PNG: `node frame.mjs PAGE HASH PICTURE`. HASH is a
+// link to the moment, as the page gives it: `#t=12.53&run=four-bar-c`.
 import { pathToFileURL } from "node:url";
 import { chromium } from "../tests/browser/node_modules/playwright-core/index.mjs";
 
@@ -18,5 +17,7 @@ const context = await browser.newContext({
 const tab = await context.newPage();
 await tab.goto(pathToFileURL(page) + hash);
 await tab.waitForSelector("html[data-ready]", { timeout: 60_000 });
-await tab.locator("#stage").screenshot({ path: picture });
+const stage = tab.locator("#stage");
+await stage.evaluate((canvas) => (canvas.style.border = "none"));
+await stage.screenshot({ path: picture });
 await browser.close();
