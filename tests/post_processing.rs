@@ -8,34 +8,14 @@ mod written;
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use written::{Run, freeplay, output, root};
+use written::{Run, freeplay, python, root, said_by};
 
 fn run() -> Run {
     Run::of("four-bar-c", &["run.duration=0.003"])
 }
 
-fn python() -> PathBuf {
-    let named = std::env::var_os("FREEPLAY_PYTHON").map(PathBuf::from);
-    let python = named.unwrap_or_else(|| root().join(".venv/bin/python"));
-    assert!(
-        python.is_file(),
-        "there is no {}: make a virtual environment .venv with the packages of \
-         scripts/requirements.txt, or name a Python that has them in FREEPLAY_PYTHON",
-        python.display()
-    );
-    python
-}
-
 fn examples() -> PathBuf {
     root().join("scripts/post")
-}
-
-/// Standard output of a command, which must end well.
-fn said_by(command: &mut Command) -> String {
-    let done = output(command);
-    let errors = String::from_utf8_lossy(&done.stderr);
-    assert!(done.status.success(), "{command:?} failed: {errors}");
-    String::from_utf8(done.stdout).unwrap()
 }
 
 /// An example has found the largest eccentricity in B, to the last bit, and has drawn something.

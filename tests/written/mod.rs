@@ -74,3 +74,24 @@ pub fn output(command: &mut Command) -> Output {
 pub fn freeplay<S: AsRef<std::ffi::OsStr>>(arguments: &[S]) -> Output {
     output(Command::new(env!("CARGO_BIN_EXE_freeplay")).args(arguments))
 }
+
+/// The Python that has the packages of `scripts/requirements.txt`.
+pub fn python() -> PathBuf {
+    let named = std::env::var_os("FREEPLAY_PYTHON").map(PathBuf::from);
+    let python = named.unwrap_or_else(|| root().join(".venv/bin/python"));
+    assert!(
+        python.is_file(),
+        "there is no {}: make a virtual environment .venv with the packages of \
+         scripts/requirements.txt, or name a Python that has them in FREEPLAY_PYTHON",
+        python.display()
+    );
+    python
+}
+
+/// Standard output of a command, which must end well.
+pub fn said_by(command: &mut Command) -> String {
+    let done = output(command);
+    let errors = String::from_utf8_lossy(&done.stderr);
+    assert!(done.status.success(), "{command:?} failed: {errors}");
+    String::from_utf8(done.stdout).unwrap()
+}
