@@ -15,6 +15,17 @@ pub struct Singular {
 /// Factors a symmetric positive definite matrix in place into L D Lᵀ (lower triangle; 1/D on the
 /// diagonal).
 pub fn factor_symmetric<S: Scalar>(a: &mut [S], n: usize) -> Result<(), Singular> {
+    // sizes that mechanisms have, known to the compiler
+    match n {
+        2 => factor_sized(&mut a[..4], 2),
+        4 => factor_sized(&mut a[..16], 4),
+        6 => factor_sized(&mut a[..36], 6),
+        _ => factor_sized(a, n),
+    }
+}
+
+#[inline(always)]
+fn factor_sized<S: Scalar>(a: &mut [S], n: usize) -> Result<(), Singular> {
     for j in 0..n {
         let whole = a[j * n + j];
         let mut pivot = whole;
@@ -41,6 +52,16 @@ pub fn factor_symmetric<S: Scalar>(a: &mut [S], n: usize) -> Result<(), Singular
 
 /// Solves with the factors of [`factor_symmetric`], in place.
 pub fn solve_symmetric<S: Scalar>(factors: &[S], n: usize, b: &mut [S]) {
+    match n {
+        2 => solve_sized(&factors[..4], 2, &mut b[..2]),
+        4 => solve_sized(&factors[..16], 4, &mut b[..4]),
+        6 => solve_sized(&factors[..36], 6, &mut b[..6]),
+        _ => solve_sized(factors, n, b),
+    }
+}
+
+#[inline(always)]
+fn solve_sized<S: Scalar>(factors: &[S], n: usize, b: &mut [S]) {
     for i in 0..n {
         for k in 0..i {
             b[i] -= factors[k * n + i] * b[k];
