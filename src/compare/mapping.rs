@@ -386,6 +386,7 @@ mod tests {
             path: "theirs.csv".into(),
             format: Format::Text,
             columns: columns.collect(),
+            misfits: Vec::new(),
             ends_within_a_line: false,
         }
     }
