@@ -337,6 +337,47 @@ fn quiet_says_nothing_on_stderr_and_a_reader_that_has_gone_is_no_error() {
 }
 
 #[test]
+fn a_result_that_cannot_be_printed_ends_with_3() {
+    let desk = Desk::new();
+    let case = case("pendulum");
+    let full = std::fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
+    let said = desk.command(&["check", &case]).stdout(full).output().unwrap();
+    assert_eq!(said.status.code(), Some(3), "{said:?}");
+    let errors = String::from_utf8(said.stderr).unwrap();
+    assert!(errors.contains("cannot write the result to standard output"), "{errors}");
+}
+
+#[test]
+fn an_error_that_nobody_hears_keeps_its_exit_code() {
+    let desk = Desk::new();
+    let (reader, writer) = std::io::pipe().unwrap();
+    drop(reader);
+    let status = desk.command(&["info", "missing.h5"]).stderr(writer).status().unwrap();
+    assert_eq!(status.code(), Some(2));
+}
+
+#[test]
+fn pages_and_figures_replace_plain_files_only() {
+    let desk = Desk::new();
+    desk.run(&["run", &case("pendulum"), "--set", "run.duration=0.01", "--quiet"]).assert_code(0);
+    let device = desk.path("device");
+    let _socket = std::os::unix::net::UnixListener::bind(&device).unwrap();
+    std::fs::create_dir(desk.path("figures")).unwrap();
+    for link in ["figures/energy.svg", "page.html"] {
+        std::os::unix::fs::symlink(&device, desk.path(link)).unwrap();
+    }
+    let plot = ["plot", "pendulum.h5", "-o", "figures", "--force"];
+    let report = |page| ["report", "pendulum.h5", "-o", page, "--force"];
+    for command in [&plot, &report("page.html"), &report("device"), &report("figures")] {
+        let said = desk.run(command);
+        assert!(said.assert_code(3).errors.contains("is not a plain file"), "{said:?}");
+    }
+    assert!(!std::fs::metadata(&device).unwrap().is_file());
+    let left = std::fs::read_dir(desk.path("figures")).unwrap().count();
+    assert_eq!(left, 1, "nothing is written beside what is refused");
+}
+
+#[test]
 fn an_output_that_exists_stays_unless_forced() {
     let desk = Desk::new();
     let a = case("four-bar-a");

@@ -321,6 +321,7 @@ fn a_link_leads_to_its_moment_and_its_run() {
     assert_eq!(text(&link["address"]), "#t=12.53&run=four-bar-c");
     let moment = text(&link["moment"]);
     assert!(moment.contains("contact") && moment.contains("kN"), "{moment}");
+    assert!(moment.contains("four-bar-c at 12.53"), "{moment}");
 }
 
 #[test]

@@ -66,7 +66,7 @@ pub(super) fn certify(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(output) = &arguments.output {
         write(&certificate, output, header, arguments.force)?;
     }
-    super::print(format_args!("{}\n{words}", case.name));
+    super::print(format_args!("{}\n{words}", case.name))?;
     let end: f64 = certificate.claims.len() as f64;
     let held = certificate.claims.iter().filter(|c| c.reference.state >= digits).count() as f64;
     if arguments.digits.is_some() && held < end {

@@ -18,8 +18,7 @@ pub struct Arguments {
 pub(super) fn check(arguments: &Arguments) -> Result<(), Failure> {
     let case = arguments.case.read()?;
     let simulation = Simulation::new(&case).map_err(Failure::input)?;
-    super::print(Checked { case: &case, simulation: &simulation });
-    Ok(())
+    super::print(Checked { case: &case, simulation: &simulation })
 }
 
 /// A case in words.

@@ -70,7 +70,7 @@ pub(super) fn compare(arguments: &Arguments) -> Result<(), Failure> {
     match arguments.json {
         true => super::print(format_args!("{}\n", comparison.json(arguments.require_digits))),
         false => super::print(&comparison),
-    }
+    }?;
     match arguments.require_digits.and_then(|digits| comparison.shortfall(digits)) {
         None => Ok(()),
         Some(shortfall) => Err(Failure::with(1, shortfall)),

@@ -68,6 +68,5 @@ pub(super) fn export(arguments: &Arguments) -> Result<(), Failure> {
     })?;
     let paths: Vec<String> = written.paths.iter().map(|path| path.display().to_string()).collect();
     let (rows, columns) = (written.rows, written.columns);
-    super::print(format_args!("{}: {rows} rows, {columns} {things}\n", paths.join(", ")));
-    Ok(())
+    super::print(format_args!("{}: {rows} rows, {columns} {things}\n", paths.join(", ")))
 }

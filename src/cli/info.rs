@@ -14,6 +14,5 @@ pub struct Arguments {
 /// Says what a result file holds and how it was made.
 pub(super) fn info(arguments: &Arguments) -> Result<(), Failure> {
     let overview = ResultFile::open(&arguments.file).and_then(|file| Overview::of(&file));
-    super::print(overview.map_err(Failure::input)?);
-    Ok(())
+    super::print(overview.map_err(Failure::input)?)
 }

@@ -14,6 +14,7 @@ mod summary;
 use crate::case::{Case, Changes, Override};
 use clap::{Args, Parser, Subcommand};
 use std::error::Error as StdError;
+use std::io::{self, Write};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -102,14 +103,14 @@ impl Failure {
 
     /// Tells the error and its causes on stderr.
     fn tell(&self) {
-        eprintln!("error: {}", self.error);
+        say(format_args!("error: {}", self.error));
         let mut cause = self.error.source();
         while let Some(error) = cause {
-            eprintln!("  caused by: {error}");
+            say(format_args!("  caused by: {error}"));
             cause = error.source();
         }
         if let Some(rest) = &self.rest {
-            eprintln!("{rest}");
+            say(rest);
         }
     }
 }
@@ -125,10 +126,25 @@ fn chain(error: &(impl StdError + ?Sized)) -> String {
     line
 }
 
+/// A result could not be printed.
+#[derive(Debug, thiserror::Error)]
+#[error("cannot write the result to standard output")]
+struct NotPrinted(#[source] io::Error);
+
 /// Prints a result on stdout; a reader that has gone away is no error.
-fn print(result: impl std::fmt::Display) {
-    use std::io::Write;
-    let _ = write!(std::io::stdout(), "{result}");
+fn print(result: impl std::fmt::Display) -> Result<(), Failure> {
+    let mut stdout = io::stdout();
+    match write!(stdout, "{result}").and_then(|()| stdout.flush()) {
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
+            Err(Failure::output(NotPrinted(error)))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Says something on stderr; nobody need listen.
+fn say(words: impl std::fmt::Display) {
+    let _ = writeln!(io::stderr(), "{words}");
 }
 
 /// Parses the command line and does what it says.

@@ -3,9 +3,9 @@
 use super::Failure;
 use crate::figure::{self, Figure, Format, Options, Over};
 use crate::model::did_you_mean;
-use crate::record::ResultFile;
-use std::fs::{self, OpenOptions};
-use std::io::{self, Write};
+use crate::record::{self, Draft, ResultFile};
+use std::fs;
+use std::io;
 use std::path::{Path, PathBuf};
 
 /// Arguments of `plot`.
@@ -90,10 +90,10 @@ struct NoFigure {
 /// Why figures could not be written.
 #[derive(Debug, thiserror::Error)]
 enum PlotError {
-    #[error("{} exists; --force replaces it", path.display())]
-    Exists { path: PathBuf },
-    #[error("cannot {attempt} {}", path.display())]
-    System { attempt: &'static str, path: PathBuf, source: io::Error },
+    #[error("cannot make the folder {}", path.display())]
+    Folder { path: PathBuf, source: io::Error },
+    #[error(transparent)]
+    Output(#[from] record::Error),
     #[error("cannot draw {}", path.display())]
     Encode { path: PathBuf, source: figure::EncodeError },
 }
@@ -108,8 +108,7 @@ pub(super) fn plot(arguments: &Arguments) -> Result<(), Failure> {
     let written = write(&figures, &formats, &arguments.output, arguments.force);
     let written = written.map_err(Failure::output)?;
     let (count, folder) = (figures.len(), arguments.output.display());
-    super::print(format_args!("{folder}: {count} figures, {written} files\n"));
-    Ok(())
+    super::print(format_args!("{folder}: {count} figures, {written} files\n"))
 }
 
 /// The figures that are asked for by name or kind; all if none is.
@@ -159,7 +158,7 @@ fn write(
 ) -> Result<usize, PlotError> {
     fs::create_dir_all(folder).map_err(|source| {
         let path = folder.to_owned();
-        PlotError::System { attempt: "make the folder", path, source }
+        PlotError::Folder { path, source }
     })?;
     let path = |figure: &Figure, format: Format| {
         folder.join(format!("{}.{}", figure.name, format.ending()))
@@ -169,34 +168,12 @@ fn write(
         .flat_map(|figure| formats.iter().map(move |format| (figure, *format)))
         .map(|(figure, format)| (figure, format, path(figure, format)))
         .collect();
-    let taken = files.iter().find(|(_, _, path)| !force && fs::symlink_metadata(path).is_ok());
-    if let Some((_, _, path)) = taken {
-        return Err(PlotError::Exists { path: path.clone() });
-    }
-    for (figure, format, path) in &files {
+    let drafts: Vec<Draft> =
+        files.iter().map(|(_, _, path)| Draft::create(path, force)).collect::<Result<_, _>>()?;
+    for ((figure, format, path), draft) in files.iter().zip(drafts) {
         let encoded = figure.encode(*format);
         let bytes = encoded.map_err(|source| PlotError::Encode { path: path.clone(), source })?;
-        write_file(path, &bytes).map_err(|source| PlotError::System {
-            attempt: "write",
-            path: path.clone(),
-            source,
-        })?;
+        draft.publish_bytes(&bytes)?;
     }
     Ok(files.len())
-}
-
-/// Writes a file under a temporary name beside it and renames it, so that it is whole or not there.
-fn write_file(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    let name = path.file_name().unwrap_or_default().to_string_lossy();
-    let temporary = path.with_file_name(format!(".{name}.partial-{}", std::process::id()));
-    let written = OpenOptions::new()
-        .write(true)
-        .create_new(true)
-        .open(&temporary)
-        .and_then(|mut file| file.write_all(bytes))
-        .and_then(|()| fs::rename(&temporary, path));
-    if written.is_err() {
-        let _ = fs::remove_file(&temporary);
-    }
-    written
 }

@@ -2,7 +2,7 @@
 
 use super::Failure;
 use crate::record::ResultFile;
-use crate::report::{Error, Report};
+use crate::report::Report;
 use std::path::PathBuf;
 
 /// Arguments of `report`.
@@ -28,11 +28,8 @@ pub(super) fn report(arguments: &Arguments) -> Result<(), Failure> {
         .collect::<Result<_, _>>()
         .map_err(Failure::input)?;
     let report = Report::new(&files).map_err(Failure::input)?;
-    report
-        .write(&arguments.output, arguments.force)
-        .map_err(|error: Error| Failure::output(error))?;
+    report.write(&arguments.output, arguments.force).map_err(Failure::output)?;
     let runs = if files.len() == 1 { "1 run".to_owned() } else { format!("{} runs", files.len()) };
     let size = report.html().len() as f64 / 1e6;
-    super::print(format_args!("{}: {runs}, {size:.2} MB\n", arguments.output.display()));
-    Ok(())
+    super::print(format_args!("{}: {runs}, {size:.2} MB\n", arguments.output.display()))
 }

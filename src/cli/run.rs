@@ -53,9 +53,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         told.progress.contacts,
         told.progress.steps,
         begun.elapsed().as_secs_f64()
-    ));
+    ))?;
     if let Some(growth) = told.growth {
-        super::print(growth);
+        super::print(growth)?;
     }
     Ok(())
 }

@@ -25,11 +25,13 @@ pub(super) fn summary(arguments: &Arguments) -> Result<(), Failure> {
     let against = against.transpose().map_err(Failure::input)?;
     let summary = Summary::of(&file, against.as_ref()).map_err(Failure::input)?;
     if let Err(error) = &summary.reference {
-        eprintln!("note: no ideal run of this case: {}", super::chain(error.as_ref()));
+        super::say(format_args!(
+            "note: no ideal run of this case: {}",
+            super::chain(error.as_ref())
+        ));
     }
     match arguments.json {
         true => super::print(format_args!("{:#}\n", summary.to_json())),
         false => super::print(&summary),
     }
-    Ok(())
 }

@@ -335,6 +335,7 @@ fn common(theirs: &Read<'_>, reference: &Read<'_>, parts: &Parts) -> Result<Vec<
         path: foreign.map_or(theirs.path(), |(table, _)| &table.path).to_owned(),
         columns: foreign.map_or(String::new(), |(table, _)| table.names()),
         ours: parts.names_of(b),
+        hints: String::new(),
     })
 }
 

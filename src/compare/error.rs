@@ -127,7 +127,7 @@ pub enum Error {
         value: f64,
     },
     /// Times that go back.
-    #[error("{}: times are not sorted, {after:e} s follows {before:e} s", path.display())]
+    #[error("{}: times are not sorted, {after} s follows {before} s", path.display())]
     Unsorted {
         /// The file.
         path: PathBuf,
@@ -202,7 +202,7 @@ pub enum Error {
         si: &'static str,
     },
     /// No column of theirs is one of ours.
-    #[error("{} has no columns that are known to be of ours; --map THEIRS=OURS tells which are\n  theirs: {columns}\n  ours: {ours}", path.display())]
+    #[error("{} has no columns that are known to be of ours; --map THEIRS=OURS tells which are\n  theirs: {columns}\n  ours: {ours}{hints}", path.display())]
     NothingInCommon {
         /// The file.
         path: PathBuf,
@@ -210,6 +210,8 @@ pub enum Error {
         columns: String,
         /// Ours.
         ours: String,
+        /// What theirs are near to, a line each.
+        hints: String,
     },
     /// Neither file says which mechanism it is of.
     #[error("neither {} nor {} is a freeplay result: one must say which mechanism it is", theirs.display(), reference.display())]
@@ -230,7 +232,7 @@ pub enum Error {
         difference: String,
     },
     /// A time beyond the reference.
-    #[error("{} has a sample at {time:e} s, but {} covers {first:e} s to {last:e} s{hint}", theirs.display(), reference.display())]
+    #[error("{} has a sample at {time} s, but {} covers {first} s to {last} s{hint}", theirs.display(), reference.display())]
     Outside {
         /// The first file.
         theirs: PathBuf,
@@ -246,7 +248,7 @@ pub enum Error {
         hint: String,
     },
     /// `--until` beyond the reference.
-    #[error("{} ends at {last:e} s, before --until {until:e}", reference.display())]
+    #[error("{} ends at {last} s, before --until {until}", reference.display())]
     ReferenceEnds {
         /// The reference.
         reference: PathBuf,
@@ -256,7 +258,7 @@ pub enum Error {
         until: f64,
     },
     /// No sample before `--until`.
-    #[error("{} has no sample up to {until:e} s", path.display())]
+    #[error("{} has no sample up to {until} s", path.display())]
     NoSamples {
         /// The file.
         path: PathBuf,
@@ -284,7 +286,7 @@ pub enum Error {
     /// Running the reference's case again gives another trajectory.
     #[error(
         "the case of {} was run again, to have it at the times of {}, and came out otherwise: \
-         {column} at {time:e} s is {again:e}, in the file {stored:e}; another version of the \
+         {column} at {time} s is {again:e}, in the file {stored:e}; another version of the \
          program or of its libraries, or another machine, made it. --common-times compares at \
          the times that both files hold",
         reference.display(), theirs.display()

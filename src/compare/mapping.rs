@@ -108,6 +108,7 @@ impl Mapping {
                 path: table.path.clone(),
                 columns: table.names(),
                 ours: parts.names_of(compared),
+                hints: guesses.hints(table, parts, compared),
             });
         }
         let used =
@@ -297,6 +298,24 @@ impl Guesses {
     }
 }
 
+impl Guesses {
+    /// What their names are near to, a line each.
+    fn hints(&self, table: &ForeignTable, parts: &Parts, compared: &[Column]) -> String {
+        let ours: Vec<String> = compared.iter().map(|column| parts.name(column)).collect();
+        let near = |column: &ForeignColumn| {
+            let hint = did_you_mean(&column.name, ours.iter().map(String::as_str));
+            (!hint.is_empty()).then(|| format!("\"{}\"{hint}", column.name))
+        };
+        let doubts = self.doubts(table, parts);
+        let known = if doubts.is_empty() {
+            table.columns.iter().filter_map(near).collect()
+        } else {
+            doubts
+        };
+        known.iter().map(|hint| format!("\n  {hint}")).collect()
+    }
+}
+
 /// A name as it is compared: letters and digits only, in lower case.
 fn plain(name: &str) -> String {
     name.chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase).collect()
@@ -367,6 +386,7 @@ mod tests {
             path: "theirs.csv".into(),
             format: Format::Text,
             columns: columns.collect(),
+            misfits: Vec::new(),
             ends_within_a_line: false,
         }
     }
@@ -421,6 +441,16 @@ mod tests {
         assert_eq!(settled[0].0, "phi_coupler");
         let own_name = pairs(&["t", "theta_coupler", "angle.coupler"], &[]);
         assert_eq!(own_name, [("angle.coupler".to_owned(), "angle.coupler".to_owned())]);
+    }
+
+    #[test]
+    fn a_table_with_nothing_of_ours_is_told_what_its_names_are_near_to() {
+        let told = |names: &[&str]| mapping(names, &[]).unwrap_err().to_string();
+        let near = told(&["t", "angel.coupler"]);
+        assert!(near.contains("\"angel.coupler\" (did you mean \"angle.coupler\"?)"), "{near}");
+        let twice = told(&["t", "angle.coupler", "angle.coupler"]);
+        assert!(twice.contains("may each be angle.coupler"), "{twice}");
+        assert!(!told(&["t", "qux"]).contains("did you mean"));
     }
 
     #[test]

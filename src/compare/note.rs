@@ -39,7 +39,7 @@ fn notes_on(read: &Read<'_>) -> Vec<String> {
     }
     let used = mapping.columns.iter().map(|mapped| &table.columns[mapped.theirs]);
     let written = used.filter_map(|column| column.written_digits);
-    if let Some(most) = written.max().filter(|most| *most < FEW_DIGITS) {
+    if let Some(most) = written.max().filter(|most| (1..FEW_DIGITS).contains(most)) {
         notes.push(format!("{path} is written with {most} significant digits: no more can agree"));
     }
     notes

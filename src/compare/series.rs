@@ -155,12 +155,11 @@ impl Aligned {
 
     /// Columns of angles that are off by whole turns anywhere.
     fn turned(&self) -> Vec<usize> {
+        let is_off = |turns: f64| turns != 0.0 && turns.is_finite();
         let off = |index: &usize| {
             let pairs = self.theirs[*index].iter().zip(&self.reference[*index]);
             self.columns[*index].quantity() == Some(Quantity::Angle)
-                && pairs
-                    .clone()
-                    .any(|(theirs, reference)| whole_turns(*theirs, *reference).abs() > 0.0)
+                && pairs.map(|(theirs, reference)| whole_turns(*theirs, *reference)).any(is_off)
         };
         (0..self.columns.len()).filter(off).collect()
     }
@@ -244,5 +243,10 @@ mod tests {
         assert_eq!(series.turned, [0]);
         assert!(series.gate[1].digits > 14.0);
         assert!(turned.grade(&scales, None, false).gate[1].digits < 0.0);
+        for no_turn in [f64::INFINITY, f64::NAN] {
+            let spoilt = aligned(&["angle.crank"], "angle.crank", no_turn);
+            let series = spoilt.grade(&scales, None, true);
+            assert!(series.turned.is_empty() && series.gate[1].digits == f64::NEG_INFINITY);
+        }
     }
 }

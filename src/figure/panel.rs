@@ -16,6 +16,8 @@ pub(super) const TYPE: f64 = 9.0;
 const MAJOR: f64 = 3.6;
 /// Length of a minor tick (pt).
 const MINOR: f64 = 2.0;
+/// How far words may reach beyond the end of a frame's side; longer ones are set smaller (pt).
+const OVERHANG: f64 = 5.0;
 /// Distance of labels from the frame (pt).
 pub(super) const LABEL_GAP: f64 = 3.0;
 /// Columns of the picture in a point of width.
@@ -121,6 +123,8 @@ pub(super) enum Sample {
     Line(Stroke),
     /// A bar.
     Bar(&'static str),
+    /// A point.
+    Dot(Dot),
 }
 
 /// A panel.
@@ -225,10 +229,14 @@ impl Panel {
         let (middle, down) = (0.5 * (left + right), 0.5 * (top + bottom));
         if words.x_title {
             let line = bottom + LABEL_GAP + SMALL_TYPE + 0.35 * TYPE + 0.75 * TYPE;
-            svg.text([middle, line], Anchor::Middle, TYPE, &self.x.full_title());
+            let title = self.x.full_title();
+            let size = title.fitting(TYPE, frame.size[0] + 2.0 * OVERHANG);
+            svg.text([middle, line], Anchor::Middle, size, &title);
         }
         if words.y_title {
-            svg.text_upwards([left - title_at, down], Anchor::Middle, TYPE, &self.y.full_title());
+            let title = self.y.full_title();
+            let size = title.fitting(TYPE, frame.size[1] + 2.0 * OVERHANG);
+            svg.text_upwards([left - title_at, down], Anchor::Middle, size, &title);
         }
     }
 
@@ -361,9 +369,10 @@ impl Panel {
         }
     }
 
-    /// Draws the label so that it begins at a point.
-    pub fn draw_label(&self, svg: &mut Svg, at: Point) {
-        svg.text(at, Anchor::Start, SMALL_TYPE, &self.label);
+    /// Draws the label so that it begins at a point, over a frame of this width (pt).
+    pub fn draw_label(&self, svg: &mut Svg, at: Point, width: f64) {
+        let size = self.label.fitting(SMALL_TYPE, width + OVERHANG);
+        svg.text(at, Anchor::Start, size, &self.label);
     }
 }
 
@@ -387,6 +396,7 @@ fn draw_entry(svg: &mut Svg, [from, line]: Point, (sample, words): &(Sample, Tex
     let (y, to) = (line - MIDDLE * SMALL_TYPE, from + SAMPLE);
     match sample {
         Sample::Line(stroke) => svg.lines([[[from, y], [to, y]]], stroke),
+        Sample::Dot(dot) => svg.discs([[to - dot.radius, y]], dot.radius, dot.colour),
         Sample::Bar(colour) => svg.rectangles([[[from, y - 2.5], [to, y + 2.5]]], colour),
     }
     svg.text([to + SAMPLE_GAP, line], Anchor::Start, SMALL_TYPE, words);

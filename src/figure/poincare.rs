@@ -4,28 +4,36 @@ use super::decimate::Point;
 use super::grid::by_run_and_joint;
 use super::journal_path::in_the_circle;
 use super::palette::BLUE;
-use super::panel::{Dot, Mark};
+use super::panel::{Dot, Mark, Sample};
 use super::runs::{DriveAngle, Run, Runs, interpolate};
+use super::text::Text;
 use super::ticks::signed;
 use super::{Error, Figures};
 use std::f64::consts::TAU;
+
+/// A passage.
+const DOT: Dot = Dot { radius: 1.4, colour: BLUE };
 
 /// Draws one figure with a panel for each joint of each run that has a drive.
 pub(super) fn draw(runs: &Runs, figures: &mut Figures<'_>) -> Result<(), Error> {
     let section = figures.options.section;
     let angle = signed(&format!("{}", (section.to_degrees() * 1e6).round() / 1e6));
-    let sheets = by_run_and_joint(runs, 1.0, |run, joint, index| {
+    let mut sheets = by_run_and_joint(runs, 1.0, |run, joint, index| {
         let Some(drive) = &run.drive else { return Ok(None) };
         let times = passages(&run.times, drive, section);
         if times.is_empty() {
             return Ok(None);
         }
         let points = at(run, index, &times)?;
-        let marks = vec![Mark::Dots(points.clone(), Dot { radius: 1.4, colour: BLUE })];
-        let mut panel = in_the_circle(run, joint, index, &points, marks)?;
-        panel.label = panel.label.and(", ").and_italic("φ").and(format!(" = {angle}°"));
-        Ok(Some(panel))
+        let marks = vec![Mark::Dots(points.clone(), DOT)];
+        in_the_circle(run, joint, index, &points, marks).map(Some)
     })?;
+    for sheet in &mut sheets {
+        if let Some(first) = sheet.rows.iter_mut().flatten().flatten().next() {
+            let words = Text::italic("φ").and(format!(" = {angle}°"));
+            first.legend = vec![(Sample::Dot(DOT), words)];
+        }
+    }
     let title = format!("Centres of the journals at drive angle {angle}°");
     figures.add("poincare", None, &title, sheets);
     Ok(())

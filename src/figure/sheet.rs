@@ -98,7 +98,7 @@ impl Sheet {
                 let frame = Frame { corner: [x, top], size: [layout.frame, layout.heights[row]] };
                 panel.draw(svg, frame, self.words(row, column), layout.left[column] - TITLE_DROP);
                 let line = top - HEADER_GAP;
-                panel.draw_label(svg, [x, line]);
+                panel.draw_label(svg, [x, line], layout.frame);
                 let first = line - HEADER * layout.headers[row].saturating_sub(1) as f64;
                 panel.draw_legend(svg, [x + layout.frame, first], layout.frame, HEADER);
             }
@@ -219,6 +219,21 @@ mod tests {
         assert_eq!((count(&svg, ">0.2<"), count(&svg, ">0.5<")), (1, 3));
         let svg = draw(vec![vec![panel("Up")], vec![panel("Other")]], true);
         assert_eq!((count(&svg, ">Up (kN)<"), count(&svg, ">Other (kN)<")), (1, 1));
+    }
+
+    #[test]
+    fn long_words_of_narrow_panels_are_set_smaller() {
+        let mut narrow = panel("Up").unwrap();
+        narrow.label = Text::roman("a run whose name is long");
+        narrow.x.title = Text::roman("A quantity whose name is long");
+        let svg = draw(vec![vec![Some(narrow.clone()), Some(narrow.clone()), Some(narrow)]], false);
+        for (words, size) in [("a run whose name is long", 8.0), ("A quantity", 9.0)] {
+            let (before, _) = svg.split_once(words).unwrap();
+            let (_, attribute) = before.rsplit_once("font-size=\"").unwrap();
+            let drawn: f64 = attribute.split('"').next().unwrap().parse().unwrap();
+            assert!(drawn < size, "{words}: {drawn}");
+            assert_eq!(count(&svg, words), 3);
+        }
     }
 
     #[test]

@@ -103,6 +103,12 @@ impl Text {
         self.0.iter().map(|span| size * span.level.size() * font(span).width(&span.text)).sum()
     }
 
+    /// The size at which it is no wider than the room, and no larger than `most`.
+    pub fn fitting(&self, most: f64, room: f64) -> f64 {
+        let width = self.width(most);
+        if width > room { most * room / width } else { most }
+    }
+
     /// What stands inside an SVG `text` element of this size.
     pub fn to_svg(&self, size: f64) -> String {
         let mut svg = String::new();
@@ -153,6 +159,15 @@ pub(super) fn escape(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_text_shrinks_into_its_room_and_never_grows() {
+        let text = Text::roman("Penetration, ").and_italic("δ").and(" (mm)");
+        let width = text.width(9.0);
+        assert_eq!(text.fitting(9.0, width), 9.0);
+        assert_eq!(text.fitting(9.0, 10.0 * width), 9.0);
+        assert!((text.width(text.fitting(9.0, 0.6 * width)) - 0.6 * width).abs() < 1e-9 * width);
+    }
 
     #[test]
     fn names_cannot_break_out_of_the_text() {

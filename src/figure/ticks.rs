@@ -24,7 +24,8 @@ pub(super) struct Ticks {
 }
 
 impl Ticks {
-    /// Ticks at 1, 2 or 5 times a power of ten, at most `most` major ones if two do.
+    /// Ticks at 1, 2 or 5 times a power of ten, at most `most` major ones unless that leaves a
+    /// single one, which would tell no scale.
     pub fn decimal(range: [f64; 2], most: usize) -> Self {
         let span = range[1] - range[0];
         let rough = span / most.max(2) as f64;
@@ -33,10 +34,10 @@ impl Ticks {
             return Ticks::default();
         }
         let steps = [(1.0, 5.0), (2.0, 4.0), (5.0, 5.0), (10.0, 5.0), (20.0, 4.0)];
-        let fits = |(step, _): &&(f64, f64)| {
-            count(range, step * 10_f64.powf(power)) <= most.max(2) && *step >= 1.0
-        };
-        let (step, parts) = *steps.iter().find(fits).unwrap_or(&steps[4]);
+        let count = |(step, _): &(f64, f64)| count(range, step * 10_f64.powf(power));
+        let fits = steps.iter().position(|step| count(step) <= most.max(2)).unwrap_or(4);
+        let (step, parts) =
+            if count(&steps[fits]) < 2 { steps[fits.saturating_sub(1)] } else { steps[fits] };
         let power = power as i32;
         let (step, power) = if step >= 10.0 { (step / 10.0, power + 1) } else { (step, power) };
         Ticks::every(range, |k| times_power(step * k, power), step * 10_f64.powi(power), parts)
@@ -125,6 +126,12 @@ mod tests {
     }
 
     #[test]
+    fn no_tick_stands_alone() {
+        assert_eq!(Ticks::decimal([-3.5, 4.3], 3).labels, ["−2", "0", "2", "4"]);
+        assert_eq!(Ticks::decimal([-0.9, 0.99], 2).labels, ["−0.5", "0.0", "0.5"]);
+    }
+
+    #[test]
     fn minor_ticks_lie_between_the_major_ones() {
         let ticks = Ticks::decimal([0.0, 1.0], 3);
         assert_eq!(ticks.labels, ["0.0", "0.5", "1.0"]);
@@ -164,7 +171,7 @@ mod tests {
         ) {
             let range = [low, low + span];
             let ticks = Ticks::decimal(range, most);
-            prop_assert!((1..=most).contains(&ticks.major.len()), "{:?}", ticks.major);
+            prop_assert!((2..=most.max(5)).contains(&ticks.major.len()), "{:?}", ticks.major);
             prop_assert_eq!(ticks.major.len(), ticks.labels.len());
             for tick in ticks.major.iter().chain(&ticks.minor) {
                 prop_assert!(*tick >= low - 1e-6 * span && *tick <= low + span * (1.0 + 1e-6));

@@ -46,6 +46,12 @@ impl Draft {
         &self.temporary
     }
 
+    /// Writes and publishes a file that is known as a whole.
+    pub fn publish_bytes(self, bytes: &[u8]) -> Result<(), Error> {
+        fs::write(&self.temporary, bytes).map_err(|source| self.error("write", source))?;
+        self.publish().map(drop)
+    }
+
     /// Publishes a complete file. Returns its path.
     pub fn publish(self) -> Result<PathBuf, Error> {
         self.sync()?;
@@ -158,7 +164,7 @@ fn temporary_name(name: &OsStr, number: u32) -> OsString {
 }
 
 /// Endings that stay at the end of a name.
-const ENDINGS: [&str; 5] = ["h5", "csv", "parquet", "ombvx", "ombvh5"];
+const ENDINGS: [&str; 9] = ["h5", "csv", "parquet", "ombvx", "ombvh5", "html", "svg", "png", "pdf"];
 
 /// `NAME.word.h5` beside `NAME.h5`, and beside a name without an ending of ours.
 fn beside(path: &Path, word: &str) -> PathBuf {

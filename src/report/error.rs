@@ -26,18 +26,4 @@ pub enum Error {
     /// The runs cannot be written as JSON.
     #[error("cannot write the runs into the page")]
     Json(#[from] serde_json::Error),
-    /// The page is there already, and was not to be replaced.
-    #[error("{} exists; --force replaces it", path.display())]
-    Exists {
-        /// The page asked for.
-        path: PathBuf,
-    },
-    /// The page cannot be written.
-    #[error("cannot write {}", path.display())]
-    Write {
-        /// The page asked for.
-        path: PathBuf,
-        /// Why.
-        source: io::Error,
-    },
 }

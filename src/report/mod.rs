@@ -17,11 +17,9 @@ mod thin;
 pub use error::Error;
 
 use crate::post::Summary;
-use crate::record::ResultFile;
+use crate::record::{self, Draft, ResultFile};
 use html::{escape, json_in_script};
 use run::{PageRun, Run};
-use std::fs::{self, OpenOptions};
-use std::io::{self, ErrorKind, Write};
 use std::path::Path;
 use tables::Summarised;
 
@@ -80,33 +78,9 @@ impl Report {
     /// Writes the page; with `force` in place of one that is there.
     ///
     /// # Errors
-    /// [`Error::Exists`] or [`Error::Write`].
-    pub fn write(&self, path: &Path, force: bool) -> Result<(), Error> {
-        let failed = |source| Error::Write { path: path.to_owned(), source };
-        if force {
-            return self.replace(path).map_err(failed);
-        }
-        let mut file = match OpenOptions::new().write(true).create_new(true).open(path) {
-            Err(error) if error.kind() == ErrorKind::AlreadyExists => {
-                return Err(Error::Exists { path: path.to_owned() });
-            }
-            opened => opened.map_err(failed)?,
-        };
-        file.write_all(self.html.as_bytes()).map_err(|error| {
-            let _ = fs::remove_file(path); // half a page is none
-            failed(error)
-        })
-    }
-
-    /// Writes beside the page that is there, then puts the new one in its place.
-    fn replace(&self, path: &Path) -> io::Result<()> {
-        let mut beside = path.as_os_str().to_owned();
-        beside.push(format!(".partial-{}", std::process::id()));
-        let done = fs::write(&beside, &self.html).and_then(|()| fs::rename(&beside, path));
-        if done.is_err() {
-            let _ = fs::remove_file(&beside);
-        }
-        done
+    /// The page is there and `force` is not, or it cannot be written.
+    pub fn write(&self, path: &Path, force: bool) -> Result<(), record::Error> {
+        Draft::create(path, force)?.publish_bytes(self.html.as_bytes())
     }
 }
 

@@ -49,6 +49,19 @@ impl Array {
         }
     }
 
+    /// What keeps it from giving columns to a table of so many rows; a single number is none.
+    fn misfit(&self, length: usize) -> Option<String> {
+        let Array { name, rows, columns, .. } = self;
+        let fits = if self.is_vector() {
+            [1, length].contains(&self.values.len())
+        } else {
+            [rows, columns].contains(&&length)
+        };
+        (!fits).then(|| {
+            format!("\"{name}\" (left out: {rows} by {columns}, but there are {length} times)")
+        })
+    }
+
     /// The columns it gives to a table of so many rows.
     fn columns_of(&self, length: usize) -> Vec<ForeignColumn> {
         let column = |name: String, values: Vec<f64>| ForeignColumn {
@@ -97,7 +110,8 @@ pub(super) fn read(path: &Path, format: Format) -> Result<ForeignTable, Error> {
         return Err(Error::Empty { path: path.to_owned() });
     };
     let columns = arrays.iter().flat_map(|array| array.columns_of(length)).collect();
-    Ok(ForeignTable { path: path.to_owned(), format, columns, ends_within_a_line: false })
+    let misfits = arrays.iter().filter_map(|array| array.misfit(length)).collect();
+    Ok(ForeignTable { path: path.to_owned(), format, columns, misfits, ends_within_a_line: false })
 }
 
 /// Number of samples: the length of the vector with a usual name for times, or else of most
@@ -242,6 +256,19 @@ mod tests {
         assert_eq!(table.format, Format::Hdf5);
         assert_eq!(table.names(), r#""time", "y[:,0]", "y[:,1]""#);
         assert_eq!(column(&table, "y[:,1]"), [10.0, 20.0, 30.0]);
+    }
+
+    #[test]
+    fn arrays_of_another_length_than_the_time_are_told() {
+        let table = read_made(true, |file| {
+            let t = ndarray::array![[0.0, 0.5]];
+            file.new_dataset_builder().with_data(&t).create("t").unwrap();
+            let phi = ndarray::array![[7.0, 8.0, 9.0]];
+            file.new_dataset_builder().with_data(&phi).create("phi").unwrap();
+            let c = ndarray::array![[1e-3]];
+            file.new_dataset_builder().with_data(&c).create("c").unwrap();
+        });
+        assert_eq!(table.names(), r#""t", "phi" (left out: 3 by 1, but there are 2 times)"#);
     }
 
     #[test]

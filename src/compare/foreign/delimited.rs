@@ -33,7 +33,13 @@ pub(super) fn read(path: &Path, text: &str) -> Result<ForeignTable, Error> {
         return Err(Error::Empty { path: path.to_owned() });
     }
     let ends_within_a_line = !text.ends_with(['\n', '\r']);
-    Ok(ForeignTable { path: path.to_owned(), format: Format::Text, columns, ends_within_a_line })
+    Ok(ForeignTable {
+        path: path.to_owned(),
+        format: Format::Text,
+        columns,
+        misfits: Vec::new(),
+        ends_within_a_line,
+    })
 }
 
 /// The rows read so far.

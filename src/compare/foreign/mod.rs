@@ -40,6 +40,8 @@ pub struct ForeignTable {
     pub format: Format,
     /// All columns of numbers, the time among them.
     pub columns: Vec<ForeignColumn>,
+    /// Numbers that are no columns, their length not being that of the time, in words.
+    pub misfits: Vec<String>,
     /// Whether the file seems to end before its last line does.
     pub ends_within_a_line: bool,
 }
@@ -127,6 +129,7 @@ impl ForeignTable {
         if self.columns.len() > MOST {
             names.push(format!("and {} more", self.columns.len() - MOST));
         }
+        names.extend(self.misfits.iter().take(MOST).cloned());
         names.join(", ")
     }
 }

@@ -130,7 +130,10 @@ export class Transport {
     find("moment").setAttribute("aria-live", playing ? "off" : "polite");
     const period = this.counted().map((run) => run.period).find(Boolean);
     const turns = time / period;
-    find("turn").textContent = period ? `turn ${Math.floor(turns) + 1}, ${significant(360 * (turns % 1), 4)}° into it` : "";
+    const turn = period ? `turn ${Math.floor(turns) + 1}, ${significant(360 * (turns % 1), 4)}° into it` : "";
+    find("turn").textContent = turn;
+    const names = this.counted().map((run) => run.label).join(", ");
+    find("moment-caption").textContent = `${names} at ${milliseconds(time)} ms${turn && ", "}${turn}`;
     const rows = this.counted().flatMap((run) => this.rowsOf(run, time));
     find("moment-rows").replaceChildren(...rows);
   }
