@@ -32,7 +32,7 @@ mod tests;
 
 pub use error::ExplicitError;
 
-use crate::dae::{Advance, Count, Engine, Fault, Snapshot, System};
+use crate::dae::{Advance, Count, Direction, Engine, Fault, Snapshot, System};
 use crate::scalar::Scalar;
 use events::{Standing, Target};
 use extrapolation::Extrapolation;
@@ -117,6 +117,8 @@ pub struct Explicit<S: Scalar, Y: System<S>> {
     fresh: bool,
     evaluated_here: bool,
     standing: Vec<Standing>,
+    /// Directions watched since the last restart.
+    armed: Vec<Direction>,
     fired: Vec<bool>,
     idle: u32,
     now: Snapshot<S>,
@@ -161,6 +163,7 @@ impl<S: Scalar, Y: System<S>> Explicit<S, Y> {
             fresh: true,
             evaluated_here: false,
             standing: vec![Standing::Passed; functions],
+            armed: vec![Direction::Off; functions],
             fired: vec![false; functions],
             idle: 0,
             now,
