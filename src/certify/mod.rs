@@ -13,7 +13,7 @@ mod tangent;
 
 pub use digits::{MOST_DIGITS, Parts, Scales, digits};
 pub use matching::{Match, Parting};
-pub use reference::{Error, Growth, Stage, Watch};
+pub use reference::{Error, Growth, Stage, Stopped, Watch};
 pub use stored::NotAReference;
 pub use tangent::{Tangent, tangent};
 
@@ -45,6 +45,10 @@ pub struct Reference {
     pub tolerances: [f64; 2],
     /// How a small change of the start grows.
     pub growth: Growth,
+    /// Whether it goes to the end that was asked for.
+    pub complete: bool,
+    /// Why it does not, if a run behind it stopped.
+    pub stopped: Option<String>,
 }
 
 /// A run held against a certified reference.
@@ -85,8 +89,22 @@ pub fn reference(
         .collect::<Vec<_>>();
     let mut trajectory = pair.tight;
     trajectory.samples.truncate(wrong.len());
+    let complete = wrong.len() as u64 >= schedule.len();
+    let stopped = pair.stopped.map(|stopped| chain(&stopped));
     let tolerances = pair.tolerances;
-    Ok(Reference { trajectory, wrong, scales, tolerances, growth })
+    Ok(Reference { trajectory, wrong, scales, tolerances, growth, complete, stopped })
+}
+
+/// An error with all its causes.
+fn chain(error: &dyn std::error::Error) -> String {
+    let mut words = error.to_string();
+    let mut source = error.source();
+    while let Some(cause) = source {
+        words.push_str(": ");
+        words.push_str(&cause.to_string());
+        source = cause.source();
+    }
+    words
 }
 
 /// A certified reference that was kept.
@@ -110,7 +128,7 @@ pub fn certify(
         Err(simulate::Error::Interrupted { time }) => {
             return Err(simulate::Error::Interrupted { time });
         }
-        Err(error) => Some(error.to_string()),
+        Err(error) => Some(chain(&error)),
     };
     let claims = claims(&run, &reference);
     let (events, parting) = matching::events(&run, &reference.trajectory);
@@ -137,8 +155,8 @@ fn claims(run: &Trajectory, reference: &Reference) -> Vec<Claim> {
 }
 
 impl Reference {
-    /// Decades by which an error grows in a second, over the time in which doubles mean
-    /// something; `None` where nothing grows.
+    /// Decades by which an error grows in a second, on the mean over the whole reference; `None`
+    /// where nothing grows.
     pub fn growth_rate(&self) -> Option<f64> {
         let factors = &self.growth.factors;
         let last = factors.len().checked_sub(1)?;
@@ -157,6 +175,12 @@ impl Certificate {
     /// Last time (s) up to which the reference is certified to this many digits of the state.
     pub fn reference_holds(&self, digits: f64) -> Option<f64> {
         self.holds(digits, |claim| claim.reference.state)
+    }
+
+    /// Whether the reference is certified to this many digits to the end that was asked for.
+    pub fn reference_holds_to_the_end(&self, digits: f64) -> bool {
+        let held = self.claims.iter().all(|claim| claim.reference.state >= digits);
+        self.reference.complete && held
     }
 
     fn holds(&self, digits: f64, of: fn(&Claim) -> f64) -> Option<f64> {

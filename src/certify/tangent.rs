@@ -1,9 +1,10 @@
 //! A live error meter: the tangent of a trajectory, carried along with it.
 //!
-//! The tangent is the derivative of the trajectory by a relative change of its start, exact to
-//! the engine's accuracy: dual numbers go through the mechanics, through the times of events and
-//! so through the impact rates that contacts remember. Its length in scaled units says how much
-//! an error made at the start has grown.
+//! The tangent is the derivative of the trajectory by a change of its start
+//! ([`Mechanism::disturb_start`]), exact to the engine's accuracy: dual numbers go through the
+//! mechanics, through the times of events and so through the impact rates that contacts remember.
+//! Its length, in the scales that digits are counted by, over its length at the start says how
+//! much an error made there has grown.
 
 use super::digits::{MOST_DIGITS, Scales};
 use crate::case::{Case, EngineName, Precision};
@@ -22,8 +23,11 @@ const DOUBLE: f64 = 1e-16;
 pub struct Tangent {
     /// Sample times (s).
     pub times: Vec<f64>,
-    /// Scaled length of the tangent per relative change of the start, at each sample.
+    /// Scaled length of the tangent at each sample, over that at the start: one at first.
     pub growth: Vec<f64>,
+    /// Scaled length of the tangent at the start, per relative change of it: above one, for a
+    /// clearance is a small difference of large coordinates.
+    pub at_start: f64,
 }
 
 /// Carries the tangent of a case along, on the schedule of its run. The arithmetic is that of the
@@ -53,20 +57,26 @@ pub fn tangent(
     })?;
     let clearances = mechanism.model().clearances().iter().map(|c| c.radial).collect();
     let scales = Scales::of(&kept.samples, clearances);
-    Ok(Tangent {
-        times: kept.samples.iter().map(|sample| sample.time).collect(),
-        growth: kept.samples.iter().map(|sample| scales.beyond(sample)).collect(),
-    })
+    let times = kept.samples.iter().map(|sample| sample.time).collect();
+    let lengths = kept.samples.iter().map(|sample| scales.beyond(sample)).collect();
+    Ok(Tangent::new(times, lengths))
 }
 
 impl Tangent {
-    /// Digits that a double-precision run has left at each sample: 16 less those that the growth
-    /// of errors has taken so far.
+    /// From sample times (s) and scaled lengths. Where there is nothing to disturb, nothing grows.
+    fn new(times: Vec<f64>, lengths: Vec<f64>) -> Self {
+        let at_start = lengths.first().copied().unwrap_or(0.0);
+        let over_start = |length: &f64| if at_start > 0.0 { length / at_start } else { 1.0 };
+        Tangent { growth: lengths.iter().map(over_start).collect(), times, at_start }
+    }
+
+    /// Digits that a double-precision run has left at each sample: those that doubles have of the
+    /// start less those that the growth of errors has taken so far.
     pub fn digits_left(&self) -> Vec<f64> {
         let mut largest: f64 = 0.0;
         let left = self.growth.iter().map(|growth| {
             largest = largest.max(*growth);
-            (-(DOUBLE * largest).log10()).min(MOST_DIGITS)
+            (-(DOUBLE * self.at_start * largest).log10()).min(MOST_DIGITS)
         });
         left.collect()
     }
@@ -102,7 +112,7 @@ impl Tangent {
         vec![
             series(
                 "error_growth",
-                "scaled change of the state per relative change of the start",
+                "how much a small error of the start has grown, in the scales of digits",
                 self.growth.clone(),
             ),
             series(

@@ -535,11 +535,19 @@ impl<S: Scalar, Y: System<S>> Explicit<S, Y> {
         self.arm()
     }
 
+    /// Whether the last step may have led beyond a zero past which the equations are not smooth:
+    /// then nothing starts from its end.
+    fn may_be_rough_beyond(&self) -> bool {
+        let mut watches = self.flow.system.watches().iter();
+        watches.any(|watch| watch.direction != Direction::Off && watch.power <= 0.0)
+    }
+
     /// Partial step to `probe`, which is to lie this far into the step; from its nearer end.
     fn partial(&mut self, place: S, tolerance: f64) -> Result<(), ExplicitError> {
         self.tally.partial += 1;
         self.evaluated_here = false;
-        let (base, length) = if place + place > self.length {
+        let from_end = place + place > self.length && !self.may_be_rough_beyond();
+        let (base, length) = if from_end {
             (&self.here, place - self.length)
         } else {
             (&self.from, place)
