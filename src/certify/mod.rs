@@ -5,6 +5,7 @@
 //! reference and what the reference is wrong by.
 
 mod digits;
+mod growth;
 mod matching;
 mod reference;
 mod report;
@@ -22,6 +23,7 @@ use crate::record::ResultFile;
 use crate::run::{Schedule, Trajectory, Watcher};
 use crate::simulate::{self, Simulation, Statistics};
 use std::convert::Infallible;
+use std::f64::consts::LOG10_E;
 
 /// What a certificate says of each sample.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -155,13 +157,11 @@ fn claims(run: &Trajectory, reference: &Reference) -> Vec<Claim> {
 }
 
 impl Reference {
-    /// Decades by which an error grows in a second, on the mean over the whole reference; `None`
-    /// where nothing grows.
+    /// Decades by which an error grows in a second: the slope of the straight line through the
+    /// logarithms of the growth, over the whole reference; `None` where there is nothing to grow.
     pub fn growth_rate(&self) -> Option<f64> {
-        let factors = &self.growth.factors;
-        let last = factors.len().checked_sub(1)?;
-        let time = self.trajectory.samples.get(last)?.time;
-        Some((factors[last] / factors[0]).log10() / time).filter(|rate| rate.is_finite())
+        let times = self.trajectory.samples.iter().map(|sample| sample.time);
+        growth::rate(times.zip(self.growth.factors.iter().copied())).map(|rate| rate * LOG10_E)
     }
 }
 

@@ -7,6 +7,7 @@
 //! much an error made there has grown.
 
 use super::digits::{MOST_DIGITS, Scales};
+use super::growth;
 use crate::case::{Case, EngineName, Precision};
 use crate::mechanism::Mechanism;
 use crate::record::{Dimension, Series, Values};
@@ -81,11 +82,11 @@ impl Tangent {
         left.collect()
     }
 
-    /// Mean growth exponent (natural logarithm) per `period` (s), over the whole run.
+    /// Growth exponent (natural logarithm) per `period` (s): the slope of the straight line
+    /// through the logarithms of the growth, over the whole run.
     pub fn exponent_per(&self, period: f64) -> Option<f64> {
-        let (first, last) = (self.growth.first()?, self.growth.last()?);
-        let span = self.times.last()? - self.times.first()?;
-        Some((last / first).ln() * period / span).filter(|exponent| exponent.is_finite())
+        let points = self.times.iter().copied().zip(self.growth.iter().copied());
+        growth::rate(points).map(|rate| rate * period)
     }
 
     /// Growth exponents (natural logarithm) of each whole `period` (s).

@@ -109,14 +109,16 @@ impl<S: Scalar> Ambrosio<S> {
     /// of it the errors of the slip have left it.
     pub fn beyond(&self, region: SlipRegion, upward: bool, slip: S) -> SlipRegion {
         let mut index = ORDER.iter().position(|r| *r == region).unwrap_or(2);
+        let is_empty = |index: usize| ORDER[index] == Still && self.v0 == S::zero();
         if upward {
             index = (index + 1).min(ORDER.len() - 1);
-            while index + 1 < ORDER.len() && slip > self.edges(ORDER[index]).1 {
+            while index + 1 < ORDER.len() && (is_empty(index) || slip > self.edges(ORDER[index]).1)
+            {
                 index += 1;
             }
         } else {
             index = index.saturating_sub(1);
-            while index > 0 && slip < self.edges(ORDER[index]).0 {
+            while index > 0 && (is_empty(index) || slip < self.edges(ORDER[index]).0) {
                 index -= 1;
             }
         }
@@ -197,7 +199,10 @@ mod tests {
     #[test]
     fn a_ramp_through_zero_has_no_still_region() {
         let law = Ambrosio::new(0.1, 0.0, 1e-2, 1e-6);
-        assert_eq!(law.beyond(RampForward, false, -1e-8), RampBackward);
+        for off in [-1e-8, 0.0, 1e-8] {
+            assert_eq!(law.beyond(RampForward, false, off), RampBackward);
+            assert_eq!(law.beyond(RampBackward, true, off), RampForward);
+        }
         assert_eq!(law.ratio(RampForward, 1e-4), law.ratio(RampBackward, 1e-4));
     }
 }

@@ -216,9 +216,7 @@ where
         let system = self.engine.system();
         let state = State { time: now.time, q: &now.q, v: &now.v, turns: None };
         let mut values = vec![S::zero(); system.watches().len()];
-        system
-            .event_values(state, &mut values)
-            .map_err(|source| Error::System { time, source })?;
+        system.event_values(state, &mut values).map_err(|source| Error::System { time, source })?;
         let beyond = values.iter().zip(system.watches()).position(|(value, watch)| {
             let off = match watch.direction {
                 Direction::Off => 0.0,

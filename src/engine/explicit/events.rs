@@ -69,9 +69,8 @@ impl<S: Scalar, Y: System<S>> Explicit<S, Y> {
     /// stand anywhere: the edges of a friction law follow one another in the same function.
     fn is_where_it_fired(&self, k: usize) -> bool {
         let turned = self.flow.system.watches()[k].direction != self.armed[k];
-        let crossed = (self.here.approach_rates[k] * self.length).to_f64().abs();
-        let missed = self.here.approaches[k].to_f64().abs();
-        self.fired[k] && (turned || missed <= self.options.tolerance * crossed)
+        let noise = self.noise(self.here.approach_rates[k].to_f64());
+        self.fired[k] && (turned || self.here.approaches[k].to_f64().abs() <= noise)
     }
 
     fn stands(&mut self, k: usize) -> Result<Standing, Fault> {

@@ -547,11 +547,8 @@ impl<S: Scalar, Y: System<S>> Explicit<S, Y> {
         self.tally.partial += 1;
         self.evaluated_here = false;
         let from_end = place + place > self.length && !self.may_be_rough_beyond();
-        let (base, length) = if from_end {
-            (&self.here, place - self.length)
-        } else {
-            (&self.from, place)
-        };
+        let (base, length) =
+            if from_end { (&self.here, place - self.length) } else { (&self.from, place) };
         self.norm.tolerance = tolerance;
         let done = self.stepper.partial(&mut self.flow, base, length, &self.norm);
         self.norm.tolerance = self.options.tolerance;
