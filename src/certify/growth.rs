@@ -30,7 +30,7 @@ mod tests {
 
     #[test]
     fn an_exponential_has_its_rate_however_it_is_sampled() {
-        let times = [0.0, 0.1, 0.11, 0.12, 0.5, 2.0];
+        let times = [0.0_f64, 0.1, 0.11, 0.12, 0.5, 2.0];
         let rate = rate(times.iter().map(|t| (*t, 7.0 * (3.0 * t).exp()))).unwrap();
         assert!((rate - 3.0).abs() < 1e-12, "{rate}");
     }

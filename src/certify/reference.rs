@@ -5,7 +5,7 @@
 //! less: what both agree on, the tighter one certifies. The first pair is as loose as may do;
 //! where it parts too early, the rate at which it parted tells how tight the next must be.
 
-use super::digits::Scales;
+use super::digits::{Parts, Scales};
 use crate::case::{self, Case};
 use crate::mechanism::{Mechanism, Observation};
 use crate::run::{Contact, Event, Peak, Progress, Recorder, Schedule, Trajectory};
@@ -26,6 +26,10 @@ const TO_SPARE: f64 = 3.0;
 const FIRST: f64 = 24.0;
 /// Change of the start that shows what no double-precision run can know.
 const DOUBLE_PRECISION: f64 = 1e-16;
+/// Scaled changes are linear in the change of the start up to here.
+const LINEAR: f64 = 1e-3;
+/// A change smaller than this is no change: a mechanism without freedom cannot be disturbed.
+const NOTHING: f64 = 1e-9 * DOUBLE_PRECISION;
 /// Exponent of the tolerance of the run with a changed start.
 const CHANGED: f64 = 24.0;
 
@@ -35,7 +39,7 @@ pub struct Pair {
     /// The tighter run; the reference.
     pub tight: Trajectory,
     /// Scaled differences of the two at each sample of the tighter one that both have.
-    pub apart: Vec<super::digits::Parts<f64>>,
+    pub apart: Vec<Parts<f64>>,
     /// Tolerances of the tighter and of the looser run.
     pub tolerances: [f64; 2],
     /// Scales of the tighter run.
@@ -249,8 +253,8 @@ pub struct Growth {
 }
 
 /// Runs the case from a start that is changed by 1e-16, against its reference, until a tenth of
-/// the scale lies between them. From there on the factors go on with the distance between the two
-/// runs of the pair, which has long turned into the direction that grows most by then.
+/// the scale lies between them. Where that is no longer linear the factors go on with the distance
+/// between the two runs of the pair, which has long turned into the direction that grows most.
 ///
 /// # Errors
 /// See [`Error`].
@@ -278,21 +282,29 @@ pub fn growth(
 }
 
 impl Growth {
-    /// Goes on with distances that grow at the same rate.
-    fn go_on(&mut self, apart: &[super::digits::Parts<f64>]) {
-        let Some(last) = self.factors.len().checked_sub(1) else { return };
-        let (Some(factor), Some(from)) = (self.factors.last().copied(), apart.get(last)) else {
+    /// Goes on with distances that grow at the same rate, where the factors have come to the end
+    /// of what is linear; over the samples before, the two are the same on the mean.
+    fn go_on(&mut self, apart: &[Parts<f64>]) {
+        if self.double_precision_ends.is_none() {
             return;
-        };
-        let from = from.state;
-        if self.double_precision_ends.is_some() && from > 0.0 {
-            self.factors.extend(apart[last + 1..].iter().map(|apart| factor * apart.state / from));
         }
+        let linear = self.factors.iter().take_while(|apart| **apart < LINEAR).count();
+        let shared = (linear - linear / 4..linear).filter(|k| *k < apart.len());
+        let ratios: Vec<f64> = shared
+            .map(|k| (self.factors[k] / apart[k].state).ln())
+            .filter(|ratio| ratio.is_finite())
+            .collect();
+        if ratios.is_empty() {
+            return;
+        }
+        let ratio = (ratios.iter().sum::<f64>() / ratios.len() as f64).exp();
+        self.factors.truncate(linear);
+        self.factors.extend(apart.iter().skip(linear).map(|apart| ratio * apart.state));
     }
 
     fn begin_with_one(&mut self) {
         match self.factors.first().copied() {
-            Some(first) if first > 0.0 => self.factors.iter_mut().for_each(|f| *f /= first),
+            Some(first) if first > NOTHING => self.factors.iter_mut().for_each(|f| *f /= first),
             _ => self.factors.clear(),
         }
     }

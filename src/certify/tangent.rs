@@ -18,6 +18,8 @@ use std::convert::Infallible;
 
 /// Relative error of a double.
 const DOUBLE: f64 = 1e-16;
+/// A tangent shorter than this, of a change that is one, is rounding.
+const NOTHING: f64 = 1e-9;
 
 /// The growth of errors along a run.
 #[derive(Debug, Clone, PartialEq)]
@@ -64,9 +66,10 @@ pub fn tangent(
 }
 
 impl Tangent {
-    /// From sample times (s) and scaled lengths. Where there is nothing to disturb, nothing grows.
+    /// From sample times (s) and scaled lengths. Where there is nothing to disturb, as in a
+    /// mechanism without freedom, nothing grows.
     fn new(times: Vec<f64>, lengths: Vec<f64>) -> Self {
-        let at_start = lengths.first().copied().unwrap_or(0.0);
+        let at_start = lengths.first().copied().filter(|length| *length > NOTHING).unwrap_or(0.0);
         let over_start = |length: &f64| if at_start > 0.0 { length / at_start } else { 1.0 };
         Tangent { growth: lengths.iter().map(over_start).collect(), times, at_start }
     }
@@ -83,8 +86,11 @@ impl Tangent {
     }
 
     /// Growth exponent (natural logarithm) per `period` (s): the slope of the straight line
-    /// through the logarithms of the growth, over the whole run.
+    /// through the logarithms of the growth, over the whole run; `None` where nothing can grow.
     pub fn exponent_per(&self, period: f64) -> Option<f64> {
+        if self.at_start == 0.0 {
+            return None;
+        }
         let points = self.times.iter().copied().zip(self.growth.iter().copied());
         growth::rate(points).map(|rate| rate * period)
     }
@@ -122,5 +128,28 @@ impl Tangent {
                 self.digits_left(),
             ),
         ]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn growth_begins_with_one_and_digits_with_what_doubles_have_of_the_start() {
+        let tangent = Tangent::new(vec![0.0, 1.0, 2.0], vec![100.0, 1e3, 1e2]);
+        assert_eq!(tangent.growth, [1.0, 10.0, 1.0]);
+        let left = tangent.digits_left();
+        for (left, expected) in left.iter().zip([14.0, 13.0, 13.0]) {
+            assert!((left - expected).abs() < 1e-12, "{left}");
+        }
+    }
+
+    #[test]
+    fn where_nothing_can_be_disturbed_nothing_grows() {
+        let tangent = Tangent::new(vec![0.0, 1.0], vec![1e-13, 1e-290]);
+        assert_eq!(tangent.growth, [1.0, 1.0]);
+        assert_eq!(tangent.exponent_per(1.0), None);
+        assert_eq!(tangent.digits_left(), [16.0, 16.0]);
     }
 }
