@@ -77,7 +77,8 @@ pub struct Watch {
     /// The way through zero that counts.
     pub direction: Direction,
     /// The solution is analytic in |g|^power beside the zero of the event function g, on the
-    /// side where the function is positive: ½ for Hertz contact, 1 where nothing is lost.
+    /// side where the function is positive: ½ for Hertz contact, 1 where nothing is lost and the
+    /// equations go on smoothly beyond the zero, 0 where no power helps.
     pub power: f64,
 }
 

@@ -154,7 +154,7 @@ pub fn run_reference<R: Recorder>(
 }
 
 /// Carries a tangent along: the explicit engine in dual numbers over the arithmetic `S`, whose
-/// derivative is that by a relative change of the start. What an observation knows
+/// derivative is that by a change of the start ([`Mechanism::disturb_start`]). What an observation knows
 /// [`beyond`](crate::mechanism::Observation::beyond) its doubles is then the tangent.
 pub fn run_tangent<S: Scalar, R: Recorder>(
     case: &Case,
@@ -164,8 +164,8 @@ pub fn run_tangent<S: Scalar, R: Recorder>(
     watch: Watcher<'_>,
 ) -> Ran<R> {
     let mechanism = assemble::<Dual<S>>(case).and_then(|mut mechanism| {
-        let scaled = mechanism.scale_start(Dual::new(S::one(), S::one()));
-        scaled.map_err(|complaints| case.reject(complaints))?;
+        let disturbed = mechanism.disturb_start(Dual::new(S::zero(), S::one()));
+        disturbed.map_err(|complaints| case.reject(complaints))?;
         Ok(mechanism)
     });
     match mechanism {

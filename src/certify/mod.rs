@@ -5,6 +5,7 @@
 //! reference and what the reference is wrong by.
 
 mod digits;
+mod growth;
 mod matching;
 mod reference;
 mod report;
@@ -13,7 +14,7 @@ mod tangent;
 
 pub use digits::{MOST_DIGITS, Parts, Scales, digits};
 pub use matching::{Match, Parting};
-pub use reference::{Error, Growth, Stage, Watch};
+pub use reference::{Error, Growth, Stage, Stopped, Watch};
 pub use stored::NotAReference;
 pub use tangent::{Tangent, tangent};
 
@@ -22,6 +23,7 @@ use crate::record::ResultFile;
 use crate::run::{Schedule, Trajectory, Watcher};
 use crate::simulate::{self, Simulation, Statistics};
 use std::convert::Infallible;
+use std::f64::consts::LOG10_E;
 
 /// What a certificate says of each sample.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -45,6 +47,10 @@ pub struct Reference {
     pub tolerances: [f64; 2],
     /// How a small change of the start grows.
     pub growth: Growth,
+    /// Whether it goes to the end that was asked for.
+    pub complete: bool,
+    /// Why it does not, if a run behind it stopped.
+    pub stopped: Option<String>,
 }
 
 /// A run held against a certified reference.
@@ -85,8 +91,22 @@ pub fn reference(
         .collect::<Vec<_>>();
     let mut trajectory = pair.tight;
     trajectory.samples.truncate(wrong.len());
+    let complete = wrong.len() as u64 >= schedule.len();
+    let stopped = pair.stopped.map(|stopped| chain(&stopped));
     let tolerances = pair.tolerances;
-    Ok(Reference { trajectory, wrong, scales, tolerances, growth })
+    Ok(Reference { trajectory, wrong, scales, tolerances, growth, complete, stopped })
+}
+
+/// An error with all its causes.
+fn chain(error: &dyn std::error::Error) -> String {
+    let mut words = error.to_string();
+    let mut source = error.source();
+    while let Some(cause) = source {
+        words.push_str(": ");
+        words.push_str(&cause.to_string());
+        source = cause.source();
+    }
+    words
 }
 
 /// A certified reference that was kept.
@@ -110,7 +130,7 @@ pub fn certify(
         Err(simulate::Error::Interrupted { time }) => {
             return Err(simulate::Error::Interrupted { time });
         }
-        Err(error) => Some(error.to_string()),
+        Err(error) => Some(chain(&error)),
     };
     let claims = claims(&run, &reference);
     let (events, parting) = matching::events(&run, &reference.trajectory);
@@ -137,13 +157,11 @@ fn claims(run: &Trajectory, reference: &Reference) -> Vec<Claim> {
 }
 
 impl Reference {
-    /// Decades by which an error grows in a second, over the time in which doubles mean
-    /// something; `None` where nothing grows.
+    /// Decades by which an error grows in a second: the slope of the straight line through the
+    /// logarithms of the growth, over the whole reference; `None` where there is nothing to grow.
     pub fn growth_rate(&self) -> Option<f64> {
-        let factors = &self.growth.factors;
-        let last = factors.len().checked_sub(1)?;
-        let time = self.trajectory.samples.get(last)?.time;
-        Some((factors[last] / factors[0]).log10() / time).filter(|rate| rate.is_finite())
+        let times = self.trajectory.samples.iter().map(|sample| sample.time);
+        growth::rate(times.zip(self.growth.factors.iter().copied())).map(|rate| rate * LOG10_E)
     }
 }
 
@@ -157,6 +175,12 @@ impl Certificate {
     /// Last time (s) up to which the reference is certified to this many digits of the state.
     pub fn reference_holds(&self, digits: f64) -> Option<f64> {
         self.holds(digits, |claim| claim.reference.state)
+    }
+
+    /// Whether the reference is certified to this many digits to the end that was asked for.
+    pub fn reference_holds_to_the_end(&self, digits: f64) -> bool {
+        let held = self.claims.iter().all(|claim| claim.reference.state >= digits);
+        self.reference.complete && held
     }
 
     fn holds(&self, digits: f64, of: fn(&Claim) -> f64) -> Option<f64> {

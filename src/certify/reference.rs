@@ -5,7 +5,7 @@
 //! less: what both agree on, the tighter one certifies. The first pair is as loose as may do;
 //! where it parts too early, the rate at which it parted tells how tight the next must be.
 
-use super::digits::Scales;
+use super::digits::{Parts, Scales};
 use crate::case::{self, Case};
 use crate::mechanism::{Mechanism, Observation};
 use crate::run::{Contact, Event, Peak, Progress, Recorder, Schedule, Trajectory};
@@ -24,8 +24,12 @@ const APART: f64 = 5.0;
 const TO_SPARE: f64 = 3.0;
 /// The first pair: exponent of its looser tolerance.
 const FIRST: f64 = 24.0;
-/// Relative change of the start that shows what no double-precision run can know.
+/// Change of the start that shows what no double-precision run can know.
 const DOUBLE_PRECISION: f64 = 1e-16;
+/// Scaled changes are linear in the change of the start up to here.
+const LINEAR: f64 = 1e-3;
+/// A change smaller than this is no change: a mechanism without freedom cannot be disturbed.
+const NOTHING: f64 = 1e-9 * DOUBLE_PRECISION;
 /// Exponent of the tolerance of the run with a changed start.
 const CHANGED: f64 = 24.0;
 
@@ -35,11 +39,13 @@ pub struct Pair {
     /// The tighter run; the reference.
     pub tight: Trajectory,
     /// Scaled differences of the two at each sample of the tighter one that both have.
-    pub apart: Vec<super::digits::Parts<f64>>,
+    pub apart: Vec<Parts<f64>>,
     /// Tolerances of the tighter and of the looser run.
     pub tolerances: [f64; 2],
     /// Scales of the tighter run.
     pub scales: Scales,
+    /// Why one of the runs stopped short, if one did.
+    pub stopped: Option<Stopped>,
 }
 
 /// A word of progress of a reference run.
@@ -57,20 +63,25 @@ pub type Watch<'a> = &'a (dyn Fn(Stage) -> ControlFlow<()> + Sync);
 /// Why there is no reference.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
-    /// A reference run stopped.
-    #[error("the reference run at a tolerance of {tolerance:e} stopped")]
-    Stopped {
-        /// Its tolerance.
-        tolerance: f64,
-        /// Why.
-        source: simulate::Error<Infallible>,
-    },
+    /// A reference run stopped before there was anything to certify.
+    #[error(transparent)]
+    Stopped(#[from] Stopped),
     /// The case cannot be assembled in 71 digits.
     #[error(transparent)]
     Case(#[from] case::Error),
     /// Whoever watched asked to stop.
     #[error("interrupted")]
     Interrupted,
+}
+
+/// A reference run that did not come to its end.
+#[derive(Debug, thiserror::Error)]
+#[error("the reference run at a tolerance of {tolerance:e} stopped")]
+pub struct Stopped {
+    /// Its tolerance.
+    pub tolerance: f64,
+    /// Why.
+    pub source: simulate::Error<Infallible>,
 }
 
 /// One of two runs that are compared while they go.
@@ -137,10 +148,13 @@ pub fn references(
     loop {
         let pair = pair(case, schedule, loose, least, watch)?;
         let agreed = pair.agreed_until(least);
-        let whole = pair.tight.samples.len() as u64 >= schedule.len()
-            && pair.apart.len() == pair.tight.samples.len();
+        // as far as a run that stopped came, there may be agreement too
+        let whole = pair.apart.len() as u64 >= schedule.len() || pair.stopped.is_some();
         if (whole && agreed == pair.apart.len()) || loose + APART >= TIGHTEST {
-            return Ok(pair);
+            return match pair.stopped {
+                Some(stopped) if pair.apart.is_empty() => Err(Error::Stopped(stopped)),
+                _ => Ok(pair),
+            };
         }
         let lost = (loose - digits) / pair.tight.samples[agreed.saturating_sub(1)].time.max(1e-300);
         let needed = digits + TO_SPARE + lost * schedule.duration::<f64>();
@@ -179,7 +193,11 @@ fn pair(
         };
         let tolerance = tolerances[which];
         let ran = run(case, mechanism.clone(), schedule, tolerance, &mut side, &parted, watch);
-        ran.map(|()| side.kept)
+        match ran {
+            Ok(()) => Ok((side.kept, None)),
+            Err(Error::Stopped(stopped)) => Ok((side.kept, Some(stopped))),
+            Err(error) => Err(error),
+        }
     };
     let (tight, loose) = std::thread::scope(|scope| {
         let loose = scope.spawn(|| side(1));
@@ -187,12 +205,13 @@ fn pair(
         (tight, loose.join())
     });
     let loose = loose.unwrap_or_else(|panic| std::panic::resume_unwind(panic));
-    let (tight, loose) = (tight?, loose?);
+    let ((tight, tight_stopped), (loose, loose_stopped)) = (tight?, loose?);
     let scales = Scales::of(&tight.samples, clearances);
     let apart = (tight.samples.iter().zip(&loose.samples))
         .map(|(tight, loose)| scales.differences(tight, loose))
         .collect();
-    Ok(Pair { tight, apart, tolerances, scales })
+    let stopped = tight_stopped.or(loose_stopped);
+    Ok(Pair { tight, apart, tolerances, scales, stopped })
 }
 
 /// One run; that the runs of a pair have parted is no error.
@@ -218,21 +237,24 @@ fn run<R: Recorder<Error = Infallible>>(
     match ran {
         Err(simulate::Error::Interrupted { .. }) if interrupted => Err(Error::Interrupted),
         Ok(()) | Err(simulate::Error::Interrupted { .. }) => Ok(()),
-        Err(source) => Err(Error::Stopped { tolerance, source }),
+        Err(source) => Err(Error::Stopped(Stopped { tolerance, source })),
     }
 }
 
-/// How a relative change of the start by 1e-16 grows, in exact arithmetic.
+/// How a small change of the start grows, in exact arithmetic.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Growth {
-    /// Scaled change at each sample, over the relative change of the start; ends where it has
-    /// grown to a tenth of the scale.
+    /// Scaled change at each sample over that at the start, as far as the reference is certified;
+    /// nothing where a change of the start changes nothing.
     pub factors: Vec<f64>,
-    /// Time (s) at which it has: no double-precision run means anything beyond.
+    /// Time (s) at which a change by 1e-16 has grown to a tenth of the scale: no double-precision
+    /// run means anything beyond.
     pub double_precision_ends: Option<f64>,
 }
 
-/// Runs the case from a start that is changed by 1e-16, against its reference.
+/// Runs the case from a start that is changed by 1e-16, against its reference, until a tenth of
+/// the scale lies between them. Where that is no longer linear the factors go on with the distance
+/// between the two runs of the pair, which has long turned into the direction that grows most.
 ///
 /// # Errors
 /// See [`Error`].
@@ -243,13 +265,49 @@ pub fn growth(
     watch: Watch<'_>,
 ) -> Result<Growth, Error> {
     let mut mechanism: Mechanism<F256> = assemble(case)?;
-    let factor = F256::ONE + F256::from(DOUBLE_PRECISION);
-    mechanism.scale_start(factor).map_err(|complaints| case.reject(complaints))?;
+    let share = F256::from(DOUBLE_PRECISION);
+    mechanism.disturb_start(share).map_err(|complaints| case.reject(complaints))?;
     let parted = AtomicBool::new(false);
     let mut against = Against { reference, growth: Growth::default(), parted: &parted };
     let tolerance = 10f64.powf(-CHANGED);
-    run(case, mechanism, schedule, tolerance, &mut against, &parted, watch)?;
-    Ok(against.growth)
+    match run(case, mechanism, schedule, tolerance, &mut against, &parted, watch) {
+        // it tells what it came to know
+        Ok(()) | Err(Error::Stopped(_)) => {}
+        Err(error) => return Err(error),
+    }
+    let mut growth = against.growth;
+    growth.go_on(&reference.apart);
+    growth.begin_with_one();
+    Ok(growth)
+}
+
+impl Growth {
+    /// Goes on with distances that grow at the same rate, where the factors have come to the end
+    /// of what is linear; over the samples before, the two are the same on the mean.
+    fn go_on(&mut self, apart: &[Parts<f64>]) {
+        if self.double_precision_ends.is_none() {
+            return;
+        }
+        let linear = self.factors.iter().take_while(|apart| **apart < LINEAR).count();
+        let shared = (linear - linear / 4..linear).filter(|k| *k < apart.len());
+        let ratios: Vec<f64> = shared
+            .map(|k| (self.factors[k] / apart[k].state).ln())
+            .filter(|ratio| ratio.is_finite())
+            .collect();
+        if ratios.is_empty() {
+            return;
+        }
+        let ratio = (ratios.iter().sum::<f64>() / ratios.len() as f64).exp();
+        self.factors.truncate(linear);
+        self.factors.extend(apart.iter().skip(linear).map(|apart| ratio * apart.state));
+    }
+
+    fn begin_with_one(&mut self) {
+        match self.factors.first().copied() {
+            Some(first) if first > NOTHING => self.factors.iter_mut().for_each(|f| *f /= first),
+            _ => self.factors.clear(),
+        }
+    }
 }
 
 /// Compares a run with the reference until a tenth of the scale lies between them.
@@ -267,7 +325,7 @@ impl Recorder for Against<'_> {
         let there = tight.samples.get(self.growth.factors.len());
         let apart = there.map(|there| scales.differences(observation, there).state);
         match apart {
-            Some(apart) if apart < 0.1 => self.growth.factors.push(apart / DOUBLE_PRECISION),
+            Some(apart) if apart < 0.1 => self.growth.factors.push(apart),
             Some(_) => {
                 self.growth.double_precision_ends.get_or_insert(observation.time);
                 self.parted.store(true, Ordering::Relaxed);

@@ -26,11 +26,10 @@ impl Certificate {
         revolution: Option<f64>,
     ) -> fmt::Result {
         let reference = &self.reference;
-        let end = reference.trajectory.samples.last().map_or(0.0, |sample| sample.time);
         let [tight, loose] = reference.tolerances;
         writeln!(f, "  reference    71-digit runs at {tight:e} and {loose:e}")?;
         match self.reference_holds(digits) {
-            Some(time) if time >= end => {
+            Some(time) if self.reference_holds_to_the_end(digits) => {
                 writeln!(
                     f,
                     "               certified to {digits} digits to the end, {}",
@@ -43,6 +42,9 @@ impl Certificate {
                 ms(time)
             )?,
             None => writeln!(f, "               cannot certify {digits} digits anywhere")?,
+        }
+        if let Some(stopped) = &reference.stopped {
+            writeln!(f, "               {stopped}")?;
         }
         if let Some(failure) = &self.run_failure {
             writeln!(f, "  run          stopped: {failure}")?;

@@ -93,7 +93,7 @@ impl Certificate {
         let growth = Series {
             name: "error_growth",
             unit: "1",
-            long_name: "scaled change of the state per relative change of the start, by 1e-16",
+            long_name: "how much a small error of the start has grown, in the scales of digits",
             stored: Values::Real,
             along: Dimension::Time,
             values: (0..self.claims.len())
@@ -128,7 +128,9 @@ impl Reference {
 /// Reads a reference back: it is as certain as its file says, and no finer than doubles.
 pub(super) fn read(case: &Case, file: &ResultFile) -> Result<Reference, NotAReference> {
     let name = || file.path().display().to_string();
-    same_mechanism(case, file)?;
+    let kept = same_mechanism(case, file)?;
+    let last = file.times()?.last().copied().unwrap_or(0.0);
+    let complete = last >= kept.plan.duration.to_f64() * (1.0 - 1e-12);
     let need = |attribute: &'static str| {
         let missing = NotAReference::NoCertificate { file: name(), what: attribute };
         file.number(attribute).ok_or(missing)
@@ -171,16 +173,18 @@ pub(super) fn read(case: &Case, file: &ResultFile) -> Result<Reference, NotARefe
             factors: growth.into_iter().take_while(|factor| factor.is_finite()).collect(),
             double_precision_ends: file.number("double_precision_ends"),
         },
+        complete,
+        stopped: None,
     })
 }
 
-/// Whether the mechanism in the file is that of the case.
-fn same_mechanism(case: &Case, file: &ResultFile) -> Result<(), NotAReference> {
+/// The case in the file, if its mechanism is that of the case.
+fn same_mechanism(case: &Case, file: &ResultFile) -> Result<Case, NotAReference> {
     let name = || file.path().display().to_string();
     let text = file.text("case_toml").unwrap_or_default();
-    let theirs = Case::from_text(file.path(), text, &case::Changes::default())
+    let kept = Case::from_text(file.path(), text, &case::Changes::default())
         .map_err(|source| NotAReference::Case { file: name(), source })?;
-    let (ours, theirs) = (&case.description, &theirs.description);
+    let (ours, theirs) = (&case.description, &kept.description);
     let differs = [
         ("[ground]", ours.ground != theirs.ground),
         ("[bodies]", ours.bodies != theirs.bodies),
@@ -191,7 +195,7 @@ fn same_mechanism(case: &Case, file: &ResultFile) -> Result<(), NotAReference> {
     ];
     match differs.into_iter().find(|(_, differs)| *differs) {
         Some((what, _)) => Err(NotAReference::OtherMechanism { file: name(), what }),
-        None => Ok(()),
+        None => Ok(kept),
     }
 }
 

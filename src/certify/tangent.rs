@@ -1,11 +1,13 @@
 //! A live error meter: the tangent of a trajectory, carried along with it.
 //!
-//! The tangent is the derivative of the trajectory by a relative change of its start, exact to
-//! the engine's accuracy: dual numbers go through the mechanics, through the times of events and
-//! so through the impact rates that contacts remember. Its length in scaled units says how much
-//! an error made at the start has grown.
+//! The tangent is the derivative of the trajectory by a change of its start
+//! ([`Mechanism::disturb_start`]), exact to the engine's accuracy: dual numbers go through the
+//! mechanics, through the times of events and so through the impact rates that contacts remember.
+//! Its length, in the scales that digits are counted by, over its length at the start says how
+//! much an error made there has grown.
 
 use super::digits::{MOST_DIGITS, Scales};
+use super::growth;
 use crate::case::{Case, EngineName, Precision};
 use crate::mechanism::Mechanism;
 use crate::record::{Dimension, Series, Values};
@@ -16,14 +18,19 @@ use std::convert::Infallible;
 
 /// Relative error of a double.
 const DOUBLE: f64 = 1e-16;
+/// A tangent shorter than this, of a change that is one, is rounding.
+const NOTHING: f64 = 1e-9;
 
 /// The growth of errors along a run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tangent {
     /// Sample times (s).
     pub times: Vec<f64>,
-    /// Scaled length of the tangent per relative change of the start, at each sample.
+    /// Scaled length of the tangent at each sample, over that at the start: one at first.
     pub growth: Vec<f64>,
+    /// Scaled length of the tangent at the start, per relative change of it: above one, for a
+    /// clearance is a small difference of large coordinates.
+    pub at_start: f64,
 }
 
 /// Carries the tangent of a case along, on the schedule of its run. The arithmetic is that of the
@@ -53,29 +60,39 @@ pub fn tangent(
     })?;
     let clearances = mechanism.model().clearances().iter().map(|c| c.radial).collect();
     let scales = Scales::of(&kept.samples, clearances);
-    Ok(Tangent {
-        times: kept.samples.iter().map(|sample| sample.time).collect(),
-        growth: kept.samples.iter().map(|sample| scales.beyond(sample)).collect(),
-    })
+    let times = kept.samples.iter().map(|sample| sample.time).collect();
+    let lengths = kept.samples.iter().map(|sample| scales.beyond(sample)).collect();
+    Ok(Tangent::new(times, lengths))
 }
 
 impl Tangent {
-    /// Digits that a double-precision run has left at each sample: 16 less those that the growth
-    /// of errors has taken so far.
+    /// From sample times (s) and scaled lengths. Where there is nothing to disturb, as in a
+    /// mechanism without freedom, nothing grows.
+    fn new(times: Vec<f64>, lengths: Vec<f64>) -> Self {
+        let at_start = lengths.first().copied().filter(|length| *length > NOTHING).unwrap_or(0.0);
+        let over_start = |length: &f64| if at_start > 0.0 { length / at_start } else { 1.0 };
+        Tangent { growth: lengths.iter().map(over_start).collect(), times, at_start }
+    }
+
+    /// Digits that a double-precision run has left at each sample: those that doubles have of the
+    /// start less those that the growth of errors has taken so far.
     pub fn digits_left(&self) -> Vec<f64> {
         let mut largest: f64 = 0.0;
         let left = self.growth.iter().map(|growth| {
             largest = largest.max(*growth);
-            (-(DOUBLE * largest).log10()).min(MOST_DIGITS)
+            (-(DOUBLE * self.at_start * largest).log10()).min(MOST_DIGITS)
         });
         left.collect()
     }
 
-    /// Mean growth exponent (natural logarithm) per `period` (s), over the whole run.
+    /// Growth exponent (natural logarithm) per `period` (s): the slope of the straight line
+    /// through the logarithms of the growth, over the whole run; `None` where nothing can grow.
     pub fn exponent_per(&self, period: f64) -> Option<f64> {
-        let (first, last) = (self.growth.first()?, self.growth.last()?);
-        let span = self.times.last()? - self.times.first()?;
-        Some((last / first).ln() * period / span).filter(|exponent| exponent.is_finite())
+        if self.at_start == 0.0 {
+            return None;
+        }
+        let points = self.times.iter().copied().zip(self.growth.iter().copied());
+        growth::rate(points).map(|rate| rate * period)
     }
 
     /// Growth exponents (natural logarithm) of each whole `period` (s).
@@ -102,7 +119,7 @@ impl Tangent {
         vec![
             series(
                 "error_growth",
-                "scaled change of the state per relative change of the start",
+                "how much a small error of the start has grown, in the scales of digits",
                 self.growth.clone(),
             ),
             series(
@@ -111,5 +128,28 @@ impl Tangent {
                 self.digits_left(),
             ),
         ]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn growth_begins_with_one_and_digits_with_what_doubles_have_of_the_start() {
+        let tangent = Tangent::new(vec![0.0, 1.0, 2.0], vec![100.0, 1e3, 1e2]);
+        assert_eq!(tangent.growth, [1.0, 10.0, 1.0]);
+        let left = tangent.digits_left();
+        for (left, expected) in left.iter().zip([14.0, 13.0, 13.0]) {
+            assert!((left - expected).abs() < 1e-12, "{left}");
+        }
+    }
+
+    #[test]
+    fn where_nothing_can_be_disturbed_nothing_grows() {
+        let tangent = Tangent::new(vec![0.0, 1.0], vec![1e-13, 1e-290]);
+        assert_eq!(tangent.growth, [1.0, 1.0]);
+        assert_eq!(tangent.exponent_per(1.0), None);
+        assert_eq!(tangent.digits_left(), [16.0, 16.0]);
     }
 }

@@ -161,10 +161,10 @@ fn growth_words(tangent: &Tangent, revolution: Option<f64>) -> String {
     };
     let each: Vec<String> =
         tangent.exponents(period).iter().map(|exponent| format!("{exponent:.2}")).collect();
+    let each = if each.is_empty() { String::new() } else { format!(" ({})", each.join(", ")) };
     format!(
-        "  errors grow by a factor e^{exponent:.2} per {per} ({}); doubles have {left:.1} digits \
-         left at the end\n",
-        each.join(", ")
+        "  errors grow by a factor e^{exponent:.2} per {per}{each}; doubles have {left:.1} digits \
+         left at the end\n"
     )
 }
 

@@ -104,21 +104,23 @@ impl<S: Scalar> Ambrosio<S> {
         }
     }
 
-    /// The region after `region` was left at `slip` (m/s) through its upper or its lower edge.
+    /// The region after `region` was left at `slip` (m/s) through its upper or its lower edge, or
+    /// one further that way. Never back: an edge that was met counts as passed, on whichever side
+    /// of it the errors of the slip have left it.
     pub fn beyond(&self, region: SlipRegion, upward: bool, slip: S) -> SlipRegion {
-        let index = ORDER.iter().position(|r| *r == region).unwrap_or(2);
-        let next = if upward { (index + 1).min(4) } else { index.saturating_sub(1) };
-        self.settled(ORDER[next], slip)
-    }
-
-    /// The region in which `slip` (m/s) stays, found from a neighbouring one.
-    fn settled(&self, region: SlipRegion, slip: S) -> SlipRegion {
         let mut index = ORDER.iter().position(|r| *r == region).unwrap_or(2);
-        while index + 1 < ORDER.len() && slip > self.edges(ORDER[index]).1 {
-            index += 1;
-        }
-        while index > 0 && slip < self.edges(ORDER[index]).0 {
-            index -= 1;
+        let is_empty = |index: usize| ORDER[index] == Still && self.v0 == S::zero();
+        if upward {
+            index = (index + 1).min(ORDER.len() - 1);
+            while index + 1 < ORDER.len() && (is_empty(index) || slip > self.edges(ORDER[index]).1)
+            {
+                index += 1;
+            }
+        } else {
+            index = index.saturating_sub(1);
+            while index > 0 && (is_empty(index) || slip < self.edges(ORDER[index]).0) {
+                index -= 1;
+            }
         }
         ORDER[index]
     }
@@ -149,11 +151,27 @@ mod tests {
 
         #[test]
         fn a_region_just_entered_is_not_left_again_at_once(slip in -0.05..0.05f64) {
-            for region in ORDER {
-                let settled = law().settled(region, slip);
-                let (lower, upper) = law().edges(settled);
-                prop_assert!(lower <= slip && slip <= upper);
+            for (at, region) in ORDER.into_iter().enumerate() {
+                let (lower, upper) = law().edges(region);
+                if at < 4 && slip >= upper {
+                    let (lower, upper) = law().edges(law().beyond(region, true, slip));
+                    prop_assert!(lower <= slip && slip <= upper);
+                }
+                if at > 0 && slip <= lower {
+                    let (lower, upper) = law().edges(law().beyond(region, false, slip));
+                    prop_assert!(lower <= slip && slip <= upper);
+                }
             }
+        }
+
+        #[test]
+        fn an_edge_that_was_met_is_passed_whatever_the_errors_of_the_slip(
+            off in -1e-6..1e-6f64, at in 0usize..4,
+        ) {
+            let met = law().edges(ORDER[at]).1 + off;
+            prop_assert!(law().beyond(ORDER[at], true, met) != ORDER[at]);
+            let met = law().edges(ORDER[at + 1]).0 + off;
+            prop_assert!(law().beyond(ORDER[at + 1], false, met) != ORDER[at + 1]);
         }
     }
 
@@ -181,7 +199,10 @@ mod tests {
     #[test]
     fn a_ramp_through_zero_has_no_still_region() {
         let law = Ambrosio::new(0.1, 0.0, 1e-2, 1e-6);
-        assert_eq!(law.beyond(RampForward, false, -1e-8), RampBackward);
+        for off in [-1e-8, 0.0, 1e-8] {
+            assert_eq!(law.beyond(RampForward, false, off), RampBackward);
+            assert_eq!(law.beyond(RampBackward, true, off), RampForward);
+        }
         assert_eq!(law.ratio(RampForward, 1e-4), law.ratio(RampBackward, 1e-4));
     }
 }

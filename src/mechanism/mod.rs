@@ -229,7 +229,7 @@ impl<S: Scalar> Mechanism<S> {
 /// c^power, with the power in which the contact law is smooth.
 fn radial_root<S: Scalar>(clearance: &Clearance<S>) -> S {
     match (1.0 / clearance.normal.smooth_power()).round() {
-        1.0 => clearance.radial,
+        q if q == 1.0 || q.is_infinite() => clearance.radial,
         2.0 => clearance.radial.sqrt(),
         q => clearance.radial.powf(S::one() / S::from_f64(q)),
     }

@@ -56,14 +56,23 @@ impl<S: Scalar> Mechanism<S> {
         self.begin(&q, &v)
     }
 
-    /// Changes the start: every coordinate and velocity by a factor, and back onto the
-    /// constraints.
+    /// Changes the start by about `share` of itself, and back onto the constraints: a coordinate
+    /// or velocity x of typical size s becomes x + share · (x + w s). The weights w differ, so that
+    /// neither a start at rest in the origin nor a symmetry makes nothing of it.
     ///
     /// # Errors
     /// The mechanism cannot be evaluated there.
-    pub fn scale_start(&mut self, factor: S) -> Result<(), Vec<Complaint>> {
+    pub fn disturb_start(&mut self, share: S) -> Result<(), Vec<Complaint>> {
+        let n = self.layout.coordinates;
+        let disturb = |list: &mut [S], sizes: &[f64]| {
+            for (i, (x, size)) in list.iter_mut().zip(sizes).enumerate() {
+                let weight = size * (i + 1) as f64 / n as f64;
+                *x += share * (*x + S::from_f64(weight));
+            }
+        };
         let (mut q, mut v) = (self.start.q.clone(), self.start.v.clone());
-        q.iter_mut().chain(&mut v).for_each(|x| *x *= factor);
+        disturb(&mut q, &self.coordinate_scales);
+        disturb(&mut v, &self.velocity_scales);
         self.project(S::zero(), &mut q, &mut v).map_err(start_fault)?;
         self.modes.fill(Mode::Flight);
         self.begin(&q, &v)
@@ -75,8 +84,7 @@ impl<S: Scalar> Mechanism<S> {
         self.start.v.copy_from_slice(v);
         self.set_scales(q, v);
         let state = State { time: S::zero(), q, v, carried: None };
-        self.place(&state);
-        self.choose_start_modes();
+        self.choose_start_modes(state).map_err(start_fault)?;
         self.evaluate(state).map_err(start_fault)?;
         self.start_energy = self.stored_energy();
         Ok(())

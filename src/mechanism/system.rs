@@ -212,18 +212,35 @@ impl<S: Scalar> Mechanism<S> {
         })
     }
 
-    /// Begins or leaves contact at the start: δ > 0, or δ = 0 and δ̇ > 0, is contact.
-    pub(super) fn choose_start_modes(&mut self) {
+    /// Begins contacts at the start: where δ > 0; where δ = 0 and δ̇ > 0; and where both are zero
+    /// and the forces at the start press journal and bearing together, δ̈ > 0.
+    pub(super) fn choose_start_modes(&mut self, state: State<'_, S>) -> Result<(), Fault> {
+        let zero = S::zero();
+        let mut resting = Vec::new();
+        self.place(&state);
         for k in 0..self.modes.len() {
             let law = &self.model.clearances()[k];
             let gap = self.now.gap(k, law);
             let rates = law.rates(&gap, &self.now.motions);
-            let touching =
-                gap.depth > S::zero() || (gap.depth == S::zero() && rates.rate > S::zero());
-            if touching {
+            if gap.depth > zero || (gap.depth == zero && rates.rate > zero) {
+                self.modes[k] = Mode::Contact(law.begin(rates.rate, rates.slip));
+            } else if gap.depth == zero && rates.rate == zero {
+                resting.push(k);
+            }
+        }
+        if !resting.is_empty() {
+            self.evaluate(state)?;
+        }
+        for k in resting {
+            let (law, now) = (&self.model.clearances()[k], &self.now);
+            let gap = now.gap(k, law);
+            let rates = law.rates(&gap, &now.motions);
+            let (second, _) = law.second_rates(&gap, &rates, &now.motions, &now.accelerations);
+            if second > zero {
                 self.modes[k] = Mode::Contact(law.begin(rates.rate, rates.slip));
             }
         }
         self.watch();
+        Ok(())
     }
 }

@@ -15,6 +15,8 @@ const FIRST_ACCURACY: f64 = 1e-8;
 const LEFT: f64 = 0.1;
 /// Change of a landing's length, as a fraction of the step, from which on Newton is trusted.
 const CLOSE: f64 = 1e-2;
+/// Corrections after a landing on an event, each of which squares what is left.
+const MOST_CORRECTIONS: usize = 6;
 /// Tolerance of partial steps that need only tell a sign.
 const ROUGH: f64 = 1e-12;
 
@@ -57,14 +59,25 @@ impl<S: Scalar, Y: System<S>> Explicit<S, Y> {
     pub(super) fn arm(&mut self) -> Result<(), Fault> {
         for k in 0..self.standing.len() {
             self.standing[k] = if self.is_watched(k) { self.stands(k)? } else { Standing::Passed };
+            self.armed[k] = self.flow.system.watches()[k].direction;
         }
         Ok(())
+    }
+
+    /// Whether function `k`, which has just fired, is still at that zero. A function that fired on
+    /// its way down and is watched for its way down again has been replaced by another, which may
+    /// stand anywhere: the edges of a friction law follow one another in the same function.
+    fn is_where_it_fired(&self, k: usize) -> bool {
+        let turned = self.flow.system.watches()[k].direction != self.armed[k];
+        let noise = self.noise(self.here.approach_rates[k].to_f64());
+        self.fired[k] && (turned || self.here.approaches[k].to_f64().abs() <= noise)
     }
 
     fn stands(&mut self, k: usize) -> Result<Standing, Fault> {
         let (value, rate) =
             (self.here.approaches[k].to_f64(), self.here.approach_rates[k].to_f64());
-        let at_zero = self.fired[k] || value.abs() <= self.noise(rate);
+        let fired = self.is_where_it_fired(k);
+        let at_zero = fired || value.abs() <= self.noise(rate);
         if !at_zero && value < 0.0 {
             return Ok(Standing::Below);
         }
@@ -78,7 +91,7 @@ impl<S: Scalar, Y: System<S>> Explicit<S, Y> {
         let direction = if rate.abs() * moment > self.noise(rate) { rate } else { self.bend(k)? };
         Ok(match direction {
             _ if direction <= 0.0 => Standing::Leaving,
-            _ if self.fired[k] => Standing::Passed,
+            _ if fired => Standing::Passed,
             _ => Standing::Due,
         })
     }
@@ -162,7 +175,32 @@ impl<S: Scalar, Y: System<S>> Explicit<S, Y> {
             self.here.y[i] = value;
             self.here.low[i] = S::zero();
         }
-        self.arrive()
+        self.arrive()?;
+        match target {
+            Target::Event(k) if exact.is_none() => self.close_in(k),
+            _ => Ok(()),
+        }
+    }
+
+    /// Moves along the flow until event function `k` is zero to rounding. What a landing leaves is
+    /// within the tolerance, but may be on the wrong side of a neighbouring event.
+    fn close_in(&mut self, k: usize) -> Result<(), Fault> {
+        for _ in 0..MOST_CORRECTIONS {
+            let (value, rate) = (self.here.approaches[k], self.here.approach_rates[k]);
+            let change = -(value / rate);
+            let small = change.to_f64().abs() <= self.options.tolerance * self.length.to_f64();
+            if !small || value.to_f64().abs() <= 0.1 * self.noise(rate.to_f64()) {
+                return Ok(());
+            }
+            let here = &mut self.here;
+            for i in 0..self.flow.len() {
+                let step = change * here.rates[i] + here.low[i];
+                (here.y[i], here.low[i]) = two_sum(here.y[i], step);
+            }
+            self.length += change;
+            self.arrive()?;
+        }
+        Ok(())
     }
 
     /// Marks the events at the place landed on: that one, and those which are zero with it.

@@ -224,7 +224,10 @@ impl<S: Scalar> Extrapolation<S> {
         let step = length * self.fractions[k - 1];
         let double = step + step;
         let stride = steps.div_ceil(LARGEST_NUMBER_OF_NOTES);
-        flow.clear_notes();
+        if noting {
+            // where the last column has none, those of an earlier one serve
+            flow.clear_notes();
+        }
         let mut now = std::mem::take(&mut self.columns[k - 1]);
         self.before[..len].fill(S::zero());
         for (now, rate) in now[..len].iter_mut().zip(&from.rates) {

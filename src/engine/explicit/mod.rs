@@ -34,7 +34,7 @@ mod tests;
 
 pub use error::ExplicitError;
 
-use crate::dae::{Advance, Count, Engine, Fault, Snapshot, System};
+use crate::dae::{Advance, Count, Direction, Engine, Fault, Snapshot, System};
 use crate::scalar::Scalar;
 use events::{Standing, Target};
 use extrapolation::Extrapolation;
@@ -119,6 +119,8 @@ pub struct Explicit<S: Scalar, Y: System<S>> {
     fresh: bool,
     evaluated_here: bool,
     standing: Vec<Standing>,
+    /// Directions watched since the last restart.
+    armed: Vec<Direction>,
     fired: Vec<bool>,
     idle: u32,
     now: Snapshot<S>,
@@ -163,6 +165,7 @@ impl<S: Scalar, Y: System<S>> Explicit<S, Y> {
             fresh: true,
             evaluated_here: false,
             standing: vec![Standing::Passed; functions],
+            armed: vec![Direction::Off; functions],
             fired: vec![false; functions],
             idle: 0,
             now,
@@ -546,15 +549,20 @@ impl<S: Scalar, Y: System<S>> Explicit<S, Y> {
         self.arm()
     }
 
+    /// Whether the last step may have led beyond a zero past which the equations are not smooth:
+    /// then nothing starts from its end.
+    fn may_be_rough_beyond(&self) -> bool {
+        let mut watches = self.flow.system.watches().iter();
+        watches.any(|watch| watch.direction != Direction::Off && watch.power <= 0.0)
+    }
+
     /// Partial step to `probe`, which is to lie this far into the step; from its nearer end.
     fn partial(&mut self, place: S, tolerance: f64) -> Result<(), ExplicitError> {
         self.tally.partial += 1;
         self.evaluated_here = false;
-        let (base, length) = if place + place > self.length {
-            (&self.here, place - self.length)
-        } else {
-            (&self.from, place)
-        };
+        let from_end = place + place > self.length && !self.may_be_rough_beyond();
+        let (base, length) =
+            if from_end { (&self.here, place - self.length) } else { (&self.from, place) };
         self.norm.tolerance = tolerance;
         let done = self.stepper.partial(&mut self.flow, base, length, &self.norm);
         self.norm.tolerance = self.options.tolerance;

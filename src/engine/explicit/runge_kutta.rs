@@ -87,7 +87,9 @@ impl<S: Scalar> RungeKutta<S> {
         let (controlled, len) = (flow.controlled(), flow.len());
         self.increment.resize(len, S::zero());
         self.stages[0][..len].copy_from_slice(&from.rates[..len]);
-        flow.clear_notes();
+        if noting {
+            flow.clear_notes();
+        }
         for (s, stage) in STAGES.iter().enumerate() {
             let place = &mut self.place[..controlled];
             combine(stage.row, length, &self.stages, Some(&from.y), place);

@@ -10,10 +10,11 @@ while read -r case until interval; do
         --until "$until" --set "run.sample_interval=$interval" \
         --output "tests/data/certified/$case.h5"
 done <<'CASES'
-four-bar-ideal      0.012 1e-4
-four-bar-a          0.024 2e-4
-four-bar-b          0.012 1e-4
-four-bar-c          0.012 1e-4
-journal-in-bearing  0.060 5e-4
-pendulum            2.0   2e-2
+four-bar-ideal       0.012 1e-4
+four-bar-a           0.024 2e-4
+four-bar-a-friction  0.012 1e-4
+four-bar-b           0.012 1e-4
+four-bar-c           0.012 1e-4
+journal-in-bearing   0.060 5e-4
+pendulum             2.0   2e-2
 CASES
