@@ -229,4 +229,19 @@ fn certified_digits_are_drawn_where_a_file_has_them() {
     let figures = draw(vec![ResultFile::open(&path).unwrap()], &Options::default()).unwrap();
     let figure = figures.iter().find(|figure| figure.name == "digits").unwrap();
     assert!(figure.svg.contains(">reference<") && figure.svg.contains(">run<"));
+    assert!(!figure.svg.contains("left to double precision"));
+}
+
+#[test]
+fn digits_that_doubles_have_left_are_drawn_and_none_below_zero() {
+    let folder = folder();
+    let path = Recorded::new(&["A"], 30, 0).write(&folder.path().join("a.h5"), false);
+    let digits: Vec<f64> = (0..30).map(|k| 16.0 - f64::from(k)).collect();
+    let file = hdf5::File::append(&path).unwrap();
+    file.new_dataset_builder().with_data(&digits).create("digits_left").unwrap();
+    drop(file);
+    let figures = draw(vec![ResultFile::open(&path).unwrap()], &Options::default()).unwrap();
+    let figure = figures.iter().find(|figure| figure.name == "digits").unwrap();
+    assert!(figure.svg.contains(">left to double precision<"));
+    assert!(figure.svg.contains(">0<") && !figure.svg.contains('−'), "no axis below zero");
 }

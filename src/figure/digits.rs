@@ -1,8 +1,8 @@
-//! Certified digits over time, where a file has them: those of the reference, and those of the run
-//! that was held against it.
+//! Digits over time, where a file has them: those certified of the reference, those of the run that
+//! was held against it, and those that errors of double precision leave.
 
 use super::over_time::{Curve, column, time_axis};
-use super::palette::{BLACK, BLUE};
+use super::palette::{BLACK, BLUE, VERMILLION};
 use super::panel::{Axis, Choice, Mark, Panel, Sample, range_of};
 use super::quantity::Unit;
 use super::runs::Runs;
@@ -11,9 +11,10 @@ use super::text::Text;
 use super::{Error, Figures};
 
 /// The curves: dataset, words, stroke.
-const CURVES: [(&str, &str, Stroke); 2] = [
+const CURVES: [(&str, &str, Stroke); 3] = [
     ("reference_digits", "reference", Stroke::solid(BLACK, 1.0)),
     ("run_digits", "run", Stroke::solid(BLUE, 0.7)),
+    ("digits_left", "left to double precision", Stroke::dashed(VERMILLION, 0.9)),
 ];
 
 /// Draws a figure if some file has digits.
@@ -23,25 +24,31 @@ pub(super) fn draw(runs: &Runs, figures: &mut Figures<'_>) -> Result<(), Error> 
     for run in runs.shown() {
         let mut curves = Vec::new();
         for (dataset, words, stroke) in CURVES {
-            let curve = run.optional_column(dataset)?.map(|values| Curve::of(run, values));
-            curves.extend(curve.map(|curve| (words, stroke, curve)));
+            let Some(values) = run.optional_column(dataset)? else { continue };
+            let curve = Curve::of(run, values.into_iter().map(none_below_zero).collect());
+            curves.push((words, stroke, curve));
         }
         if !curves.is_empty() {
             panels.push(panel(&run.name, &x, curves));
         }
     }
     let sheets = panels.chunks(super::over_time::MOST_ROWS).map(|panels| column(panels.to_vec()));
-    figures.add("digits", None, "Certified digits", sheets.collect());
+    figures.add("digits", None, "True digits", sheets.collect());
     Ok(())
+}
+
+/// Fewer than no digits are none; what is no number stays so.
+fn none_below_zero(digits: f64) -> f64 {
+    if digits < 0.0 { 0.0 } else { digits }
 }
 
 fn panel(run: &str, x: &Axis, curves: Vec<(&str, Stroke, Curve)>) -> Panel {
     let values = curves.iter().flat_map(|(_, _, curve)| &curve.points).map(|point| point[1]);
-    let [low, high] = range_of(values).unwrap_or([0.0, 16.0]);
+    let [_, high] = range_of(values).unwrap_or([0.0, 16.0]);
     let y = Axis {
-        title: Text::roman("Certified digits"),
+        title: Text::roman("True digits"),
         unit: Unit::one(),
-        range: [low.min(0.0), high.max(1.0) * 1.05],
+        range: [0.0, high.max(1.0) * 1.05],
         ticks: Choice::Decimal,
     };
     let legend =
