@@ -11,8 +11,8 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-A = "joints.A.clearance."
-O = "joints.O.clearance."
+OF_A = "joints.A.clearance."
+OF_O = "joints.O.clearance."
 HERTZ = 'stiffness = "hertz-printed", young = 207e9, poisson = 0.3'
 
 
@@ -32,7 +32,7 @@ def start(x, y, velocity_x, velocity_y, rate):
 
 
 GRAVITY = 'loads.gravity={ kind = "gravity", acceleration = [0.0, -9.81] }'
-FRICTION = O + friction(0.1, 1e-3, 1e-2)
+FRICTION = OF_O + friction(0.1, 1e-3, 1e-2)
 
 VARIATIONS = {  # name: case, simulated time (s), keys changed
     "a": ("four-bar-a", 0.010, []),
@@ -41,33 +41,33 @@ VARIATIONS = {  # name: case, simulated time (s), keys changed
     "friction": ("four-bar-a-friction", 0.010, []),
 }
 for radial in (0.00005, 0.00015, 0.0005, 0.002):
-    VARIATIONS[f"clearance {radial}"] = ("four-bar-a", 0.008, [f"{A}radial={radial:.5f}"])
+    VARIATIONS[f"clearance {radial}"] = ("four-bar-a", 0.008, [f"{OF_A}radial={radial:.5f}"])
 for restitution in (0.1, 0.3, 0.5, 0.99):
-    VARIATIONS[f"restitution {restitution}"] = ("four-bar-a", 0.008, [A + damped(restitution)])
-    cut = [A + damped(restitution), A + "tension=cut"]
+    VARIATIONS[f"restitution {restitution}"] = ("four-bar-a", 0.008, [OF_A + damped(restitution)])
+    cut = [OF_A + damped(restitution), OF_A + "tension=cut"]
     VARIATIONS[f"restitution {restitution}, cut"] = ("four-bar-a-friction", 0.006, cut)
 for rpm in (500, 2000, 12000):
     VARIATIONS[f"{rpm} rpm"] = ("four-bar-a", 0.006, [f"drives.crank.speed_rpm={rpm}"])
 for law in ((0.01, 1e-4, 1e-3), (0.3, 1e-3, 1e-2), (0.5, 0.1, 1.0), (0.1, 0.0, 0.01),
             (0.1, 0.5, 3.0), (0.05, 0.009, 0.01)):  # fmt: skip
-    VARIATIONS[f"friction {law}"] = ("four-bar-a-friction", 0.006, [A + friction(*law)])
+    VARIATIONS[f"friction {law}"] = ("four-bar-a-friction", 0.006, [OF_A + friction(*law)])
 for exponent, stiffness in (("1", 1e7), ("1.25", 1e9), ("1.3", 1e9), ("1.37", 1e9),
                             ("1.3333333333333333", 2e9), ("2", 1e12)):  # fmt: skip
     law = damped(0.9, f"stiffness = {stiffness}, exponent = {exponent}")
-    VARIATIONS[f"exponent {exponent}"] = ("four-bar-a", 0.004, [A + law])
+    VARIATIONS[f"exponent {exponent}"] = ("four-bar-a", 0.004, [OF_A + law])
 VARIATIONS |= {
     "gravity": ("four-bar-a", 0.006, [GRAVITY]),
-    "soft begins": ("four-bar-a", 0.008, [A + "minimum_impact_rate=0.5"]),
+    "soft begins": ("four-bar-a", 0.008, [OF_A + "minimum_impact_rate=0.5"]),
     "circling": ("journal-in-bearing", 0.012, [GRAVITY]),
-    "rest": ("journal-in-bearing", 0.02, [start(0, -0.001, 0, 0, 0), O + damped(0.9), GRAVITY]),
+    "rest": ("journal-in-bearing", 0.02, [start(0, -0.001, 0, 0, 0), OF_O + damped(0.9), GRAVITY]),
     "glide": (
         "journal-in-bearing",
         0.02,
-        [start(0.001, 0, 0, 0.2, 10), O + damped(0.9), FRICTION, GRAVITY],
+        [start(0.001, 0, 0, 0.2, 10), OF_O + damped(0.9), FRICTION, GRAVITY],
     ),
-    "graze": ("journal-in-bearing", 0.01, [start(0, 0.00099999999, 0.3, 0, 0), O + damped(0.9)]),
-    "settle": ("journal-in-bearing", 0.05, [start(2e-4, 0, 0, 0, 30), O + damped(0.5), FRICTION, GRAVITY]),
-    "samples at events": ("journal-in-bearing", 0.01, [start(0, 0, 1, 0, 0), O + damped(0.9)]),
+    "graze": ("journal-in-bearing", 0.01, [start(0, 0.00099999999, 0.3, 0, 0), OF_O + damped(0.9)]),
+    "settle": ("journal-in-bearing", 0.05, [start(2e-4, 0, 0, 0, 30), OF_O + damped(0.5), FRICTION, GRAVITY]),
+    "samples at events": ("journal-in-bearing", 0.01, [start(0, 0, 1, 0, 0), OF_O + damped(0.9)]),
 }
 
 

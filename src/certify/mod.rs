@@ -158,10 +158,19 @@ fn claims(run: &Trajectory, reference: &Reference) -> Vec<Claim> {
 
 impl Reference {
     /// Decades by which an error grows in a second: the slope of the straight line through the
-    /// logarithms of the growth, over the whole reference; `None` where there is nothing to grow.
+    /// logarithms of the growth, over all of it that is known; `None` where there is nothing to grow.
     pub fn growth_rate(&self) -> Option<f64> {
         let times = self.trajectory.samples.iter().map(|sample| sample.time);
         growth::rate(times.zip(self.growth.factors.iter().copied())).map(|rate| rate * LOG10_E)
+    }
+}
+
+impl Reference {
+    /// Time (s) up to which the growth of errors is known, where that is not the end.
+    pub fn growth_known_until(&self) -> Option<f64> {
+        let known = self.growth.factors.len();
+        let samples = &self.trajectory.samples;
+        (known < samples.len()).then(|| Some(samples.get(known.checked_sub(1)?)?.time)).flatten()
     }
 }
 

@@ -28,6 +28,8 @@ const FIRST: f64 = 24.0;
 const DOUBLE_PRECISION: f64 = 1e-16;
 /// Scaled changes are linear in the change of the start up to here.
 const LINEAR: f64 = 1e-3;
+/// Scaled distances larger than this are told by doubles and their remainders.
+const VISIBLE: f64 = 1e-30;
 /// A change smaller than this is no change: a mechanism without freedom cannot be disturbed.
 const NOTHING: f64 = 1e-9 * DOUBLE_PRECISION;
 /// Exponent of the tolerance of the run with a changed start.
@@ -244,8 +246,7 @@ fn run<R: Recorder<Error = Infallible>>(
 /// How a small change of the start grows, in exact arithmetic.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Growth {
-    /// Scaled change at each sample over that at the start, as far as the reference is certified;
-    /// nothing where a change of the start changes nothing.
+    /// Scaled change at each sample over that at the start, as far as it can be told; nothing where a change of the start changes nothing.
     pub factors: Vec<f64>,
     /// Time (s) at which a change by 1e-16 has grown to a tenth of the scale: no double-precision
     /// run means anything beyond.
@@ -283,7 +284,8 @@ pub fn growth(
 
 impl Growth {
     /// Goes on with distances that grow at the same rate, where the factors have come to the end
-    /// of what is linear; over the samples before, the two are the same on the mean.
+    /// of what is linear; over the samples before, the two are the same on the mean. Not where the
+    /// runs of the pair are so tight that their distance there is not known: the factors then end.
     fn go_on(&mut self, apart: &[Parts<f64>]) {
         if self.double_precision_ends.is_none() {
             return;
@@ -291,8 +293,8 @@ impl Growth {
         let linear = self.factors.iter().take_while(|apart| **apart < LINEAR).count();
         let shared = (linear - linear / 4..linear).filter(|k| *k < apart.len());
         let ratios: Vec<f64> = shared
+            .filter(|k| apart[*k].state > VISIBLE)
             .map(|k| (self.factors[k] / apart[k].state).ln())
-            .filter(|ratio| ratio.is_finite())
             .collect();
         if ratios.is_empty() {
             return;

@@ -54,14 +54,18 @@ impl Certificate {
                 self.run_holds(digits).map_or("never".into(), |t| format!("until {}", ms(t)));
             writeln!(f, "  run          holds {digits:2} digits {until}")?;
         }
+        let until = reference.growth_known_until();
+        let until = until.map_or(String::new(), |time| format!(" until {}", ms(time)));
         match (reference.growth_rate(), revolution) {
             (Some(growth), Some(revolution)) => writeln!(
                 f,
-                "  errors grow  {:.1} decades per revolution ({})",
+                "  errors grow  {:.1} decades per revolution ({}){until}",
                 growth * revolution,
                 ms(revolution)
             )?,
-            (Some(growth), None) => writeln!(f, "  errors grow  {growth:.1} decades per second")?,
+            (Some(growth), None) => {
+                writeln!(f, "  errors grow  {growth:.1} decades per second{until}")?
+            }
             (None, _) => writeln!(f, "  errors grow  too little to be measured")?,
         }
         match reference.growth.double_precision_ends {
