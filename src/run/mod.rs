@@ -118,6 +118,8 @@ struct Run<'a, S: Scalar, E: Engine<S>, R> {
     /// Relative tolerance of the engine: what it makes of a steady force is no peak.
     tolerance: f64,
     next_sample: u64,
+    /// Its time (s); `None` behind the last.
+    next_time: Option<S>,
     /// Times within the last step that adaptive sampling looks at.
     marks: Vec<Mark<S>>,
     window: Window,
@@ -158,6 +160,7 @@ where
         schedule,
         tolerance,
         next_sample: 0,
+        next_time: None,
         marks: Vec::new(),
         window: Window::new(clearances),
         contacts: Contacts::default(),
@@ -182,6 +185,7 @@ where
     R: Recorder,
 {
     fn go(&mut self, watch: Watcher<'_>) -> Outcome<(), S, E, R> {
+        self.await_sample(0);
         self.begin_contacts()?;
         self.sample(false)?;
         let end: S = self.schedule.duration();

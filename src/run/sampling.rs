@@ -36,16 +36,20 @@ where
             let at = self.schedule.time(self.next_sample);
             let observation = self.observe(time, at)?;
             self.record(&observation)?;
-            self.next_sample += 1;
+            self.await_sample(self.next_sample + 1);
         }
         Ok(())
     }
 
     /// Time of the next sample of the grid, if it is not beyond now (s).
     fn due(&self) -> Option<S> {
-        let left = self.next_sample < self.schedule.len();
-        let time: S = self.schedule.time(self.next_sample.min(self.schedule.len() - 1));
-        (left && time <= self.engine.now().time).then_some(time)
+        self.next_time.filter(|time| *time <= self.engine.now().time)
+    }
+
+    /// Makes sample `k` of the grid the next.
+    pub(super) fn await_sample(&mut self, k: u64) {
+        self.next_sample = k;
+        self.next_time = (k < self.schedule.len()).then(|| self.schedule.time(k));
     }
 
     /// Looks at the grid, the marks and the end of the step, in the order of time.
@@ -80,7 +84,7 @@ where
             let at = self.schedule.time(self.next_sample);
             let observation = self.observe(due, at)?;
             self.window.push(observation, true);
-            self.next_sample += 1;
+            self.await_sample(self.next_sample + 1);
         }
         Ok(())
     }
