@@ -1,7 +1,8 @@
 //! `freeplay check CASE`
 
 use super::{CaseArguments, Failure};
-use crate::case::Case;
+use crate::case::{AbsoluteTolerance, Case, EngineName, NormName, Precision, SolverPlan};
+use crate::contact;
 use crate::dae::System;
 use crate::mechanism::Mechanism;
 use crate::simulate::Simulation;
@@ -40,12 +41,7 @@ impl Display for Checked<'_> {
         let schedule = self.simulation.schedule();
         let (duration, samples): (f64, u64) = (schedule.duration(), schedule.len());
         writeln!(f, "  run          {duration} s, {samples} samples")?;
-        let solver = &self.case.plan.solver;
-        writeln!(
-            f,
-            "  solver       relative tolerance {:e}, absolute {:?}, initial step {:e} s, norm {:?}",
-            solver.relative_tolerance, solver.absolute_tolerance, solver.initial_step, solver.norm
-        )?;
+        solver_line(&self.case.plan.solver, f)?;
         if !self.case.defaults.is_empty() {
             writeln!(f, "  defaults taken")?;
         }
@@ -57,6 +53,37 @@ impl Display for Checked<'_> {
             "  units        SI throughout: m, kg, s, rad, N; speed_rpm in revolutions a minute"
         )
     }
+}
+
+fn solver_line(solver: &SolverPlan, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+    write!(f, "  solver       ")?;
+    match (solver.engine, solver.precision) {
+        (EngineName::Ida, _) => {
+            let norm = NormName::ALL.iter().find(|(_, norm)| *norm == solver.norm);
+            let absolute = match solver.absolute_tolerance {
+                AbsoluteTolerance::Scalar(tolerance) => format!("{tolerance:e}"),
+                AbsoluteTolerance::Scaled => "scaled".to_owned(),
+            };
+            writeln!(
+                f,
+                "ida, relative tolerance {:e}, absolute {absolute}, initial step {:e} s, norm {}",
+                solver.relative_tolerance,
+                solver.initial_step,
+                norm.map_or("", |(name, _)| name)
+            )
+        }
+        (EngineName::Explicit, Precision::Double) => {
+            writeln!(f, "explicit, relative tolerance {:e}", solver.relative_tolerance)
+        }
+        (EngineName::Explicit, _) => {
+            writeln!(f, "explicit, in 71 digits, tolerance {:e}", solver.reference_tolerance)
+        }
+    }
+}
+
+/// A number without the rounding in its last places.
+fn tidy(value: f64) -> f64 {
+    format!("{value:.12e}").parse().unwrap_or(value)
 }
 
 fn mechanism_lines(mechanism: &Mechanism<f64>, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -101,7 +128,9 @@ fn clearance_lines(
     write!(
         line,
         "radial clearance {:e} m, bearing {:e} m, journal {:e} m",
-        clearance.radial, clearance.bearing_radius, clearance.journal_radius
+        tidy(clearance.radial),
+        tidy(clearance.bearing_radius),
+        tidy(clearance.journal_radius)
     )?;
     writeln!(f, "    {line}")?;
     let law = &clearance.normal;
@@ -109,9 +138,11 @@ fn clearance_lines(
         f,
         "    K = {:.9e} N/m^{}, damping weight a = {}",
         law.stiffness(),
-        law.exponent(),
-        law.damping_weight()
+        tidy(law.exponent()),
+        tidy(law.damping_weight())
     )?;
+    let rebound = contact::rebound(law.damping_weight());
+    writeln!(f, "    one impact by itself rebounds at {rebound:.6} of its speed")?;
     let friction = if clearance.friction.is_some() { "with friction" } else { "no friction" };
     let tension = if clearance.cut_tension { "cut to zero" } else { "kept, as the law is printed" };
     writeln!(f, "    {friction}; tension is {tension}")?;

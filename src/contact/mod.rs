@@ -49,6 +49,25 @@ impl<S: Scalar> NormalForce<S> {
 /// The largest q for which contacts are followed in the q-th root of their depth.
 const LARGEST_DEGREE: u32 = 10;
 
+/// Damping weights below this have a rebound that its series tells better than its equation.
+const SMALL_WEIGHT: f64 = 1e-3;
+
+/// What one isolated impact rebounds at, over its speed: the root e of
+/// `a (1 + e) = ln((1 + a)/(1 − a e))` for a damping weight a (module's header).
+pub fn rebound(a: f64) -> f64 {
+    if a < SMALL_WEIGHT {
+        return 1.0 - a * (2.0 / 3.0 - a * (4.0 / 9.0 - a * 44.0 / 135.0));
+    }
+    // above zero below the root, below it above
+    let left = |e: f64| a * (1.0 + e) - a.ln_1p() + (-a * e).ln_1p();
+    let (mut low, mut high) = (0.0, f64::min(1.0, 1.0 / a));
+    for _ in 0..64 {
+        let middle = f64::midpoint(low, high);
+        if left(middle) > 0.0 { low = middle } else { high = middle }
+    }
+    low
+}
+
 /// The exponent n of the penetration; Hertz's 3/2 and whole ones need no power function.
 #[derive(Debug, Clone, Copy)]
 enum Exponent<S> {
@@ -267,6 +286,22 @@ mod tests {
             let sign = if (n * q).round() % 2.0 == 0.0 { 1.0 } else { -1.0 };
             assert_eq!(mirrored.value, sign * root.value, "n = {n}");
         }
+    }
+
+    #[test]
+    fn lankarani_nikravesh_rebounds_faster_than_its_restitution() {
+        // found by integrating the impact
+        for (restitution, exact) in [(0.9, 0.913177), (0.5, 0.725241), (0.3, 0.684225)] {
+            let found = rebound(lankarani_nikravesh::damping_weight(restitution));
+            assert!((found - exact).abs() < 5e-7, "{restitution}: {found}");
+        }
+        assert_eq!(rebound(hertz::damping_weight()), 1.0);
+    }
+
+    #[test]
+    fn series_and_equation_of_the_rebound_meet() {
+        let [below, above] = [0.999_999, 1.000_001].map(|share| rebound(share * SMALL_WEIGHT));
+        assert!((below - above - 2.0 / 3.0 * 2e-6 * SMALL_WEIGHT).abs() < 1e-10, "{below} {above}");
     }
 
     #[test]
