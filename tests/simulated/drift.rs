@@ -1,12 +1,12 @@
 //! How far the state that IDA integrates drifts off the constraints, before any projection.
 
-use super::{Kept, told};
+use super::told;
 use freeplay::case::Case;
 use freeplay::dae::{Advance, Count, Engine, Snapshot, System};
 use freeplay::engine::ida::{self, Ida};
 use freeplay::mechanism::Mechanism;
 use freeplay::model::Model;
-use freeplay::run::{self, Progress, Schedule};
+use freeplay::run::{self, Progress, Schedule, Trajectory};
 use freeplay::simulate::ida_options;
 use std::ops::ControlFlow;
 
@@ -18,7 +18,7 @@ pub fn largest_drift(case: &Case) -> f64 {
     let mut engine = Drifting { ruler, ida: Ida::new(mechanism, options).unwrap(), largest: 0.0 };
     let schedule = Schedule::new(&case.plan.duration, &case.plan.duration);
     let mut go_on = |_: &Progress| ControlFlow::Continue(());
-    let mut kept = Kept::default();
+    let mut kept = Trajectory::default();
     told(run::run(&mut engine, &schedule, options.relative_tolerance, &mut kept, &mut go_on));
     engine.largest
 }

@@ -8,44 +8,24 @@ pub mod truth;
 use freeplay::case::{Case, Changes};
 use freeplay::dae::Count;
 use freeplay::mechanism::Observation;
-use freeplay::run::{Contact, Event, Peak, Progress, Recorder};
+use freeplay::run::{Progress, Trajectory};
 use freeplay::simulate::Simulation;
-use std::convert::Infallible;
 use std::error::Error;
-use std::ops::ControlFlow;
+use std::ops::{ControlFlow, Deref};
 use std::path::{Path, PathBuf};
 
-/// Everything that a run told.
+/// Everything that a run told, and what it counted.
 #[derive(Debug, Default)]
 pub struct Kept {
-    pub samples: Vec<Observation>,
-    pub events: Vec<Event>,
-    pub contacts: Vec<Contact>,
-    pub peaks: Vec<Peak>,
+    trajectory: Trajectory,
     pub counts: Vec<Count>,
 }
 
-impl Recorder for Kept {
-    type Error = Infallible;
+impl Deref for Kept {
+    type Target = Trajectory;
 
-    fn sample(&mut self, observation: &Observation) -> Result<(), Infallible> {
-        self.samples.push(observation.clone());
-        Ok(())
-    }
-
-    fn event(&mut self, event: Event) -> Result<(), Infallible> {
-        self.events.push(event);
-        Ok(())
-    }
-
-    fn contact(&mut self, contact: Contact) -> Result<(), Infallible> {
-        self.contacts.push(contact);
-        Ok(())
-    }
-
-    fn peak(&mut self, peak: Peak) -> Result<(), Infallible> {
-        self.peaks.push(peak);
-        Ok(())
+    fn deref(&self) -> &Trajectory {
+        &self.trajectory
     }
 }
 
@@ -99,7 +79,7 @@ pub fn simulate(case: &Case) -> Kept {
     let mut kept = Kept::default();
     let simulation = told(Simulation::new(case));
     let mut go_on = |_: &Progress| ControlFlow::Continue(());
-    let (statistics, ran) = simulation.run(&mut kept, &mut go_on);
+    let (statistics, ran) = simulation.run(&mut kept.trajectory, &mut go_on);
     told(ran);
     kept.counts = statistics.engine.into_iter().chain(statistics.rulings).collect();
     kept
