@@ -139,11 +139,16 @@ impl<S: Scalar, Y: System<S>> Explicit<S, Y> {
     }
 
     /// Whether a root falls, and will reach zero sooner than the time can tell. Two roots that
-    /// tend to zero together never do so in τ.
+    /// tend to zero together never do so in τ, and below the tolerance they may stay where they
+    /// are: what time is left then is of the square of the tolerance.
     fn is_as_good_as_there(&self, k: usize) -> bool {
         let Some(slot) = self.flow.slot(k) else { return false };
         let i = self.flow.root(slot);
         let (sigma, rate) = (self.here.y[i].to_f64(), self.here.rates[i].to_f64());
+        let others = self.flow.roots().len() > 1;
+        if others && rate < 0.0 && sigma <= self.options.tolerance * self.deepest[k] {
+            return true;
+        }
         let pace = self.flow.pace_at(&self.here.y).to_f64();
         let left = sigma * pace / f64::from(self.flow.roots()[slot].degree);
         rate < 0.0 && left <= -rate * self.time().abs() * S::EPSILON
@@ -265,6 +270,12 @@ impl<S: Scalar, Y: System<S>> Explicit<S, Y> {
     /// and what was seen there.
     fn first_rise(&mut self, k: usize) -> Result<Option<[(S, Look); 2]>, ExplicitError> {
         let (mut begin, end) = (self.look_at_begin(k), self.look_at_end(k));
+        if matches!(self.flow.gauges()[k], Gauge::Root { .. }) && self.flow.roots().len() > 1 {
+            // roots that tend to zero together decay as e^(−τ): no polynomial bounds that, and
+            // beyond zero time goes back
+            let risen = end.course.value >= 0.0 && self.standing[k] != Standing::Passed;
+            return Ok(risen.then_some([(S::zero(), begin), (self.length, end)]));
+        }
         self.places.clear();
         self.places.extend([(begin.at, S::zero()), (end.at, self.length)]);
         match self.standing[k] {

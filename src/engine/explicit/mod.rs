@@ -48,6 +48,11 @@ use stepper::{Norm, Point, Stepper};
 /// Attempts at one step, and steps at one time, after which the engine gives up.
 const PATIENCE: u32 = 100;
 
+/// Steps between two looks at how far the simulation has come, ...
+const STRETCH: u64 = 100_000;
+/// ... and steps to the end, at the pace of the last stretch, from which on it is hopeless.
+const HOPELESS: f64 = 3e9;
+
 /// Size of a root in units of its largest value. What a relative error of the root does to the
 /// velocities is a few times that, of the velocities in the contact, which are a part of the
 /// typical ones; measured, factors of one and ten leave the same errors, a hundred larger ones.
@@ -126,6 +131,8 @@ pub struct Explicit<S: Scalar, Y: System<S>> {
     /// Places of the last step that a search has looked at, by what they were seen at.
     places: Vec<(f64, S)>,
     idle: u32,
+    /// Time (s) at which the present stretch of steps began.
+    stretch_began: f64,
     now: Snapshot<S>,
     tally: Tally,
 }
@@ -172,6 +179,7 @@ impl<S: Scalar, Y: System<S>> Explicit<S, Y> {
             fired: vec![false; functions],
             places: Vec::new(),
             idle: 0,
+            stretch_began: 0.0,
             now,
             tally: Tally::default(),
             flow,
@@ -355,11 +363,21 @@ impl<S: Scalar, Y: System<S>> Explicit<S, Y> {
         self.length = S::zero();
     }
 
-    /// Guards against steps and events that go on at one time.
-    fn count_progress(&mut self, before: S) -> Result<(), ExplicitError> {
+    /// Guards against steps and events that go on at one time, and against steps so short that
+    /// the `end` is out of reach.
+    fn count_progress(&mut self, before: S, end: S) -> Result<(), ExplicitError> {
         self.idle = if self.now.time > before { 0 } else { self.idle + 1 };
         if self.idle > PATIENCE {
             return Err(ExplicitError::Stuck { time: self.time() });
+        }
+        if self.tally.steps.is_multiple_of(STRETCH) && self.idle == 0 {
+            let now = self.time();
+            let made = now - std::mem::replace(&mut self.stretch_began, now);
+            let step = made / STRETCH as f64;
+            let steps = (end.to_f64() - now) / step;
+            if steps > HOPELESS {
+                return Err(ExplicitError::Crawl { time: now, step, steps });
+            }
         }
         Ok(())
     }
@@ -420,7 +438,7 @@ impl<S: Scalar, Y: System<S>> Engine<S> for Explicit<S, Y> {
         if self.fire_standing() {
             self.stand();
             self.tally.events += 1;
-            self.count_progress(before)?;
+            self.count_progress(before, end)?;
             return Ok(Advance::Event);
         }
         if end <= before {
@@ -443,7 +461,7 @@ impl<S: Scalar, Y: System<S>> Engine<S> for Explicit<S, Y> {
         }
         self.take_snapshot();
         self.tally.steps += 1;
-        self.count_progress(before)?;
+        self.count_progress(before, end)?;
         self.tally.events += u64::from(advance == Advance::Event);
         self.settle();
         Ok(advance)
