@@ -2,7 +2,7 @@
 
 use super::Mechanism;
 use super::layout::Role;
-use crate::clearance::{Bodies, Mode};
+use crate::clearance::{Bodies, Gap};
 use crate::dae::{Course, Fault, State, System, Watch};
 use crate::linear::Singular;
 use crate::plane::Vector;
@@ -149,12 +149,8 @@ impl<S: Scalar> System<S> for Mechanism<S> {
 
     fn offsets_at(&mut self, state: State<'_, S>, offsets: &mut [Vector<S>]) {
         self.place(&state);
-        // a difference that is nothing but rounding is that of a centred journal
-        let rounding = 4.0 * S::EPSILON * self.length;
-        for ((k, clearance), offset) in self.model.clearances().iter().enumerate().zip(offsets) {
-            let gap = self.now.gap(k, clearance);
-            let centred = gap.eccentricity.to_f64() <= rounding && !S::CARRIES_DERIVATIVE;
-            *offset = if centred { Vector::zero() } else { gap.offset };
+        for (k, offset) in offsets.iter_mut().enumerate() {
+            *offset = self.offset(k);
         }
     }
 
@@ -217,43 +213,27 @@ impl<S: Scalar> Mechanism<S> {
         (rates.rate, rates.slip)
     }
 
+    /// Offset of a journal (m), as placed. A difference that is nothing but rounding is that of a
+    /// centred journal.
+    pub(super) fn offset(&self, clearance: usize) -> Vector<S> {
+        let gap = self.now.gap(clearance, &self.model.clearances()[clearance]);
+        let rounding = 2.0 * S::EPSILON * self.gap_size(clearance, &gap);
+        let centred = gap.eccentricity.to_f64() <= rounding && !S::CARRIES_DERIVATIVE;
+        if centred { Vector::zero() } else { gap.offset }
+    }
+
+    /// Sum of the lengths that an offset is a difference of (m).
+    pub(super) fn gap_size(&self, clearance: usize, gap: &Gap<S>) -> f64 {
+        let pair = &self.model.clearances()[clearance].pair;
+        let [at_i, at_j] = [pair.i, pair.j].map(|body| self.now.poses[body].position);
+        [at_i, at_j, gap.arm_i, gap.arm_j].into_iter().fold(0.0, |sum, x| sum + x.norm().to_f64())
+    }
+
     /// The bodies without unknowns.
     pub(super) fn free_bodies(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
         self.layout.roles.iter().enumerate().filter_map(|(body, role)| match role {
             Role::Free(at) => Some((body, *at)),
             _ => None,
         })
-    }
-
-    /// Begins contacts at the start: where δ > 0; where δ = 0 and δ̇ > 0; and where both are zero
-    /// and the forces at the start press journal and bearing together, δ̈ > 0.
-    pub(super) fn choose_start_modes(&mut self, state: State<'_, S>) -> Result<(), Fault> {
-        let zero = S::zero();
-        let mut resting = Vec::new();
-        self.place(&state);
-        for k in 0..self.modes.len() {
-            let law = &self.model.clearances()[k];
-            let gap = self.now.gap(k, law);
-            let rates = law.rates(&gap, &self.now.motions);
-            if gap.depth > zero || (gap.depth == zero && rates.rate > zero) {
-                self.modes[k] = Mode::Contact(law.begin(rates.rate, rates.slip));
-            } else if gap.depth == zero && rates.rate == zero {
-                resting.push(k);
-            }
-        }
-        if !resting.is_empty() {
-            self.evaluate(state)?;
-        }
-        for k in resting {
-            let (law, now) = (&self.model.clearances()[k], &self.now);
-            let gap = now.gap(k, law);
-            let rates = law.rates(&gap, &now.motions);
-            let (second, _) = law.second_rates(&gap, &rates, &now.motions, &now.accelerations);
-            if second > zero {
-                self.modes[k] = Mode::Contact(law.begin(rates.rate, rates.slip));
-            }
-        }
-        self.watch();
-        Ok(())
     }
 }
