@@ -223,7 +223,7 @@ impl<S: Scalar> Mechanism<S> {
             let gap = self.now.gap(k, law);
             let rates = law.rates(&gap, &self.now.motions);
             if gap.depth > zero || (gap.depth == zero && rates.rate > zero) {
-                self.modes[k] = Mode::Contact(law.begin(rates.rate, rates.slip));
+                self.modes[k] = Mode::Contact(law.begin(rates.rate, rates.slip, zero));
             } else if gap.depth == zero && rates.rate == zero {
                 resting.push(k);
             }
@@ -237,10 +237,31 @@ impl<S: Scalar> Mechanism<S> {
             let rates = law.rates(&gap, &now.motions);
             let (second, _) = law.second_rates(&gap, &rates, &now.motions, &now.accelerations);
             if second > zero {
-                self.modes[k] = Mode::Contact(law.begin(rates.rate, rates.slip));
+                self.modes[k] = Mode::Contact(law.begin(rates.rate, rates.slip, zero));
             }
         }
+        self.choose_slip_regions(state)?;
         self.watch();
+        Ok(())
+    }
+
+    /// Chooses the regions of friction of the contacts at the start once more, now that the
+    /// accelerations with these contacts can be known.
+    fn choose_slip_regions(&mut self, state: State<'_, S>) -> Result<(), Fault> {
+        if self.model.clearances().iter().all(|law| law.friction.is_none()) {
+            return Ok(());
+        }
+        self.evaluate(state)?;
+        let now = &self.now;
+        for ((law, mode), touch) in
+            self.model.clearances().iter().zip(&mut self.modes).zip(&now.touches)
+        {
+            let (Mode::Contact(contact), Some(touch)) = (mode, touch) else { continue };
+            let (gap, rates) = (&touch.gap, &touch.rates);
+            let (_, acceleration) =
+                law.second_rates(gap, rates, &now.motions, &now.accelerations);
+            *contact = law.begin(rates.rate, rates.slip, acceleration);
+        }
         Ok(())
     }
 }
