@@ -103,6 +103,11 @@ impl Error {
         ));
         Error::Stopped { time, name, code, words, advice, source }
     }
+
+    /// Whether IDA failed to take a step that another order or length might take.
+    pub(super) fn is_rough(&self) -> bool {
+        matches!(self, Error::Stopped { code: -4 | -3, .. })
+    }
 }
 
 const OUR_BUG: &str = "This is a bug of freeplay: please report it with the case file.";

@@ -37,6 +37,14 @@ const ROUNDINGS_AT_END: f64 = 100.0;
 const STALLED_STEPS: u32 = 1000;
 const STALLED_ROUNDINGS: f64 = 16.0;
 
+/// A step that IDA cannot take is tried again from its begin, after a restart, so many times, each
+/// time with a first step that is this much shorter.
+const MOST_RECOVERIES: u32 = 4;
+const RECOVERY_STEP: f64 = 0.1;
+
+/// After so many good steps, a failure is a new one.
+const RECOVERED_STEPS: u32 = 50;
+
 /// The first step is at least this many roundings of the time.
 const FIRST_STEP_ROUNDINGS: f64 = 256.0;
 
@@ -109,6 +117,12 @@ pub struct Ida<Y: Dae> {
     stop_time: Option<f64>,
     progress: Progress,
     restarts: u64,
+    /// How often a step that failed was mended by a restart.
+    recoveries: u64,
+    /// How many of them were the latest attempts at one place.
+    attempts: u32,
+    /// Steps since the latest of them.
+    steps_since: u32,
     /// What IDA counted before the last restart.
     earlier: Counters,
 }
@@ -146,6 +160,9 @@ impl<Y: Dae> Ida<Y> {
             stop_time: None,
             progress: Progress::default(),
             restarts: 0,
+            recoveries: 0,
+            attempts: 0,
+            steps_since: 0,
             earlier: Counters::default(),
         })
     }
@@ -174,7 +191,8 @@ impl<Y: Dae> Ida<Y> {
         yp[2 * n..].fill(0.0);
         self.earlier += self.solver.counters();
         let shortest = FIRST_STEP_ROUNDINGS * f64::EPSILON * now.time.abs();
-        self.solver.reinitialize(now.time, self.options.initial_step.max(shortest))?;
+        let first = self.options.initial_step * RECOVERY_STEP.powi(self.attempts as i32);
+        self.solver.reinitialize(now.time, first.max(shortest))?;
         self.stop_time = None;
         self.restarts += 1;
         self.phase = Phase::Running;
@@ -195,7 +213,7 @@ impl<Y: Dae> Ida<Y> {
             self.solver.set_stop_time(end)?;
             self.stop_time = Some(end);
         }
-        let (time, ended) = self.solver.step(end)?;
+        let (time, ended) = self.solve(end)?;
         if ended == Return::AtStopTime {
             self.stop_time = None;
         }
@@ -220,6 +238,32 @@ impl<Y: Dae> Ida<Y> {
             return Ok(Advance::Event);
         }
         Ok(Advance::Stepped)
+    }
+
+    /// One step of IDA. One that fails for want of smoothness in what IDA remembers is tried again
+    /// without its memory, from where it began.
+    fn solve(&mut self, end: f64) -> Result<(f64, Return), Error> {
+        loop {
+            let error = match self.solver.step(end) {
+                Ok(done) => {
+                    self.steps_since = self.steps_since.saturating_add(1);
+                    if self.steps_since == RECOVERED_STEPS {
+                        self.attempts = 0;
+                    }
+                    return Ok(done);
+                }
+                Err(error) => error,
+            };
+            if !error.is_rough() || self.attempts >= MOST_RECOVERIES {
+                return Err(error);
+            }
+            self.attempts += 1;
+            self.steps_since = 0;
+            self.recoveries += 1;
+            self.begin()?;
+            self.solver.set_stop_time(end)?;
+            self.stop_time = Some(end);
+        }
     }
 
     /// Integrals (J) from the begin of IDA's last step to a time (s) within it, of powers inside it.
@@ -358,6 +402,8 @@ impl<Y: Dae> Engine<f64> for Ida<Y> {
             count("nonlinear_iterations", ida.nonlinear_iterations),
             count("nonlinear_convergence_failures", ida.nonlinear_convergence_failures),
             count("error_test_failures", ida.error_test_failures),
+            count("steps_at_rounding", self.solver.floored()),
+            count("recoveries", self.recoveries),
         ]
     }
 }
