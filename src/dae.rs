@@ -82,6 +82,46 @@ pub struct Watch {
     pub power: f64,
 }
 
+/// What is known of the course of an event function g near a state.
+///
+/// It may be that of another function with the same sign, smoother than g: of the square of a
+/// distance in place of the distance.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Course {
+    /// Its value.
+    pub value: f64,
+    /// Its rate (1/s).
+    pub rate: f64,
+    /// Its second derivative by time (1/s²), where the system knows it.
+    pub bend: Option<f64>,
+    /// What turning arms and relative speeds make of its third derivative at the most: the
+    /// coefficients, by powers of the time (s) from the state (1/s³, 1/s⁴, 1/s⁵). What forces add
+    /// is not in it.
+    pub twist: [f64; 3],
+    /// What a relative error of the state makes of the value.
+    pub grain: f64,
+    /// The value counts as zero below this: rounding.
+    pub noise: f64,
+}
+
+impl Course {
+    /// Nothing to be told of.
+    pub const NONE: Course =
+        Course { value: 0.0, rate: 0.0, bend: None, twist: [0.0; 3], grain: 0.0, noise: 0.0 };
+
+    /// Bound of the third derivative within a time (s) of the state.
+    pub fn twist_within(&self, span: f64) -> f64 {
+        let [at, first, second] = self.twist;
+        at + span * (first + span * second)
+    }
+
+    /// The course of −g.
+    pub fn reversed(self) -> Course {
+        let bend = self.bend.map(|bend| -bend);
+        Course { value: -self.value, rate: -self.rate, bend, ..self }
+    }
+}
+
 /// A mechanical system, as an engine sees it.
 pub trait System<S: Scalar> {
     /// Number n of coordinates, and of velocities.
@@ -132,6 +172,9 @@ pub trait System<S: Scalar> {
 
     /// Time derivative of event function `k` at the state last evaluated (1/s).
     fn event_rate(&self, k: usize) -> S;
+
+    /// The course of event function `k` at the state last evaluated.
+    fn course(&self, k: usize) -> Course;
 
     /// Moves q and v onto the constraints by the smallest mass-weighted change. Returns the
     /// largest distance (m) by which a constraint was off.

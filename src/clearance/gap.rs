@@ -100,6 +100,21 @@ impl<S: Scalar> Clearance<S> {
         }
     }
 
+    /// ë (m/s²), from the accelerations by body.
+    #[inline(always)]
+    pub fn offset_second_rate(
+        &self,
+        gap: &Gap<S>,
+        motions: &[Motion<S>],
+        accelerations: &[Motion<S>],
+    ) -> Vector<S> {
+        let of = |body: usize, arm: Vector<S>| {
+            let rate = motions[body].angular;
+            accelerations[body].at(arm) - arm * (rate * rate)
+        };
+        of(self.pair.j, gap.arm_j) - of(self.pair.i, gap.arm_i)
+    }
+
     /// δ̈ and v̇_T (m/s²), from the accelerations by body.
     pub fn second_rates(
         &self,
@@ -109,11 +124,7 @@ impl<S: Scalar> Clearance<S> {
         accelerations: &[Motion<S>],
     ) -> (S, S) {
         let (i, j) = (self.pair.i, self.pair.j);
-        let of = |body: usize, arm: Vector<S>| {
-            let rate = motions[body].angular;
-            accelerations[body].at(arm) - arm * (rate * rate)
-        };
-        let relative = of(j, gap.arm_j) - of(i, gap.arm_i);
+        let relative = self.offset_second_rate(gap, motions, accelerations);
         let turning = rates.sweep * rates.inverse_eccentricity;
         let depth = rates.normal.dot(relative) + rates.sweep * turning;
         let slip = rates.tangent.dot(relative) - rates.rate * turning

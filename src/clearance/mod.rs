@@ -1,9 +1,11 @@
 //! A journal in its bearing: geometry, mode, forces.
 
+mod course;
 mod force;
 mod gap;
 mod mode;
 
+pub use course::Bodies;
 pub use force::{ContactForce, ForceSlopes};
 pub use gap::{Gap, GapRates, GapSlopes};
 pub use mode::{Contact, EventSlot, Mode};

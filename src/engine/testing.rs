@@ -1,6 +1,6 @@
 //! Small systems with known solutions, shared by the tests of the engines.
 
-use crate::dae::{Dae, Fault, State, System, Watch};
+use crate::dae::{Course, Dae, Fault, State, System, Watch};
 use nalgebra::DMatrixViewMut;
 
 /// One constraint Φ(q) = 0 at a state.
@@ -54,7 +54,11 @@ pub(crate) struct Sample<F> {
     lambda: Vec<f64>,
     powers: Vec<f64>,
     watches: Vec<Watch>,
+    courses: Vec<Course>,
 }
+
+/// Time (s) over which the rates of event functions are taken.
+const MOMENT: f64 = 1e-6;
 
 impl<F: Formulas> Sample<F> {
     pub(crate) fn new(formulas: F) -> Self {
@@ -67,9 +71,28 @@ impl<F: Formulas> Sample<F> {
             lambda: vec![0.0; multipliers],
             powers: vec![0.0; formulas.integrals()],
             watches: formulas.watches(),
+            courses: vec![Course::NONE; formulas.watches().len()],
             scales,
             formulas,
         }
+    }
+
+    /// Values and rates of the event functions: at a state, and a moment before and after it.
+    fn chart(&mut self, State { time, q, v, .. }: State<'_, f64>) -> Result<(), Fault> {
+        let mut values = [-MOMENT, 0.0, MOMENT].map(|_| vec![0.0; self.courses.len()]);
+        for (moment, values) in [-MOMENT, 0.0, MOMENT].into_iter().zip(&mut values) {
+            let along = |x: &[f64], rates: &[f64]| -> Vec<f64> {
+                x.iter().zip(rates).map(|(x, rate)| x + moment * rate).collect()
+            };
+            let (q, v) = (along(q, v), along(v, &self.accelerations));
+            self.formulas.events(time + moment, &q, &v, values)?;
+        }
+        let [before, now, after] = values;
+        for (k, course) in self.courses.iter_mut().enumerate() {
+            let rate = (after[k] - before[k]) / (2.0 * MOMENT);
+            *course = Course { value: now[k], rate, grain: 1.0, noise: 1e-13, ..Course::NONE };
+        }
+        Ok(())
     }
 
     /// Changes the mode that the formulas are in.
@@ -109,7 +132,7 @@ impl<F: Formulas> System<f64> for Sample<F> {
             self.lambda[0] = lambda;
         }
         self.formulas.powers(time, q, v, &mut self.powers);
-        Ok(())
+        self.chart(state)
     }
 
     fn accelerations(&self) -> &[f64] {
@@ -132,8 +155,12 @@ impl<F: Formulas> System<f64> for Sample<F> {
         self.formulas.events(state.time, state.q, state.v, values)
     }
 
-    fn event_rate(&self, _k: usize) -> f64 {
-        unreachable!("an implicit engine asks for no event rates")
+    fn event_rate(&self, k: usize) -> f64 {
+        self.courses[k].rate
+    }
+
+    fn course(&self, k: usize) -> Course {
+        self.courses[k]
     }
 
     fn project(&mut self, _time: f64, q: &mut [f64], v: &mut [f64]) -> Result<f64, Fault> {

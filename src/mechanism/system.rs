@@ -2,8 +2,8 @@
 
 use super::Mechanism;
 use super::layout::Role;
-use crate::clearance::Mode;
-use crate::dae::{Fault, State, System, Watch};
+use crate::clearance::{Bodies, Mode};
+use crate::dae::{Course, Fault, State, System, Watch};
 use crate::linear::Singular;
 use crate::plane::Vector;
 use crate::scalar::Scalar;
@@ -112,6 +112,19 @@ impl<S: Scalar> System<S> for Mechanism<S> {
             _ => clearance.second_rates(&gap, &rates, &now.motions, &now.accelerations),
         };
         clearance.event_rate(&self.modes[k], what, rates.rate, second)
+    }
+
+    fn course(&self, slot: usize) -> Course {
+        let (k, what) = self.slots[slot];
+        let now = &self.now;
+        let clearance = &self.model.clearances()[k];
+        let gap = match &now.touches[k] {
+            Some(touch) => touch.gap,
+            None => now.gap(k, clearance),
+        };
+        let bodies =
+            Bodies { poses: &now.poses, motions: &now.motions, accelerations: &now.accelerations };
+        clearance.course(&self.modes[k], what, &gap, bodies, !now.offsets.is_empty())
     }
 
     fn project(&mut self, time: S, q: &mut [S], v: &mut [S]) -> Result<f64, Fault> {

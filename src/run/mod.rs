@@ -12,11 +12,13 @@ mod schedule;
 mod touching;
 mod trajectory;
 mod window;
+mod witness;
 
 pub use kinematic::{Assembled, kinematic};
 pub use recorder::*;
 pub use schedule::Schedule;
 pub use trajectory::Trajectory;
+pub use witness::Contradiction;
 
 use crate::clearance::{EventSlot, Mode};
 use crate::dae::{Advance, Direction, Engine, Fault, Snapshot, State, System};
@@ -26,6 +28,7 @@ use sampling::Mark;
 use std::ops::ControlFlow;
 use touching::{Contacts, Touching};
 use window::Window;
+use witness::Witness;
 
 /// Drift off the constraints that has the state projected and the engine restarted, over the
 /// mechanism's characteristic length.
@@ -70,6 +73,9 @@ pub enum Error<E: std::error::Error + 'static, R: std::error::Error + 'static> {
         /// Where it was noticed (s).
         time: f64,
     },
+    /// What the run has come to cannot be.
+    #[error("the run contradicts itself")]
+    Contradiction(#[source] Contradiction),
     /// What was to be kept could not be.
     #[error(transparent)]
     Recorder(R),
@@ -126,6 +132,7 @@ struct Run<'a, S: Scalar, E: Engine<S>, R> {
     /// Times within the last step that adaptive sampling looks at.
     marks: Vec<Mark<S>>,
     window: Window,
+    witness: Witness,
     scratch: Snapshot<S>,
     touching: Vec<Option<Touching<S>>>,
     contacts: Contacts,
@@ -154,7 +161,10 @@ where
     R: Recorder,
 {
     let start = engine.system().start().clone();
-    let clearances = engine.system().modes().len();
+    let system = engine.system();
+    let (clearances, length) = (system.modes().len(), system.length());
+    let speed = system.scales().1.first().copied().unwrap_or(0.0);
+    let names = system.model().names().clearances.clone();
     let mut run = Run {
         scratch: start.clone(),
         touching: vec![None; clearances],
@@ -166,6 +176,7 @@ where
         next_time: None,
         marks: Vec::new(),
         window: Window::new(clearances),
+        witness: Witness::new(names, length, speed, tolerance),
         contacts: Contacts::default(),
         peaks: Vec::new(),
         progress: Progress::default(),
@@ -193,7 +204,12 @@ where
         self.sample(false)?;
         let end: S = self.schedule.duration();
         while self.engine.now().time < end {
+            let before = self.engine.now().time;
             let advance = self.engine.step(end).map_err(|source| self.stopped(source))?;
+            if self.engine.now().time < before {
+                let [from, to] = [before, self.engine.now().time].map(Scalar::to_f64);
+                return Err(Error::Contradiction(Contradiction::TimeGoesBack { from, to }));
+            }
             self.progress.steps += 1;
             if S::EPSILON < f64::EPSILON && advance == Advance::Stepped {
                 self.check_modes()?;
@@ -337,6 +353,10 @@ where
         };
         self.progress.events += 1;
         let time = self.scratch.time.to_f64();
+        if kind == EventKind::ContactBegins {
+            let begins = self.witness.begins(clearance, rate.to_f64(), time);
+            begins.map_err(Error::Contradiction)?;
+        }
         let event = Event { time, clearance, kind, rate: rate.to_f64() };
         self.recorder.event(event).map_err(Error::Recorder)
     }

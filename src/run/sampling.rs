@@ -105,7 +105,9 @@ where
     /// The mechanism at a time within the last step, told as that at `at` (s).
     fn observe(&mut self, time: S, at: f64) -> Outcome<Observation, S, E, R> {
         self.look(time, true)?;
-        Ok(self.engine.system().observe(at, &self.scratch.integrals))
+        let observation = self.engine.system().observe(at, &self.scratch.integrals);
+        self.witness.see(&observation).map_err(super::Error::Contradiction)?;
+        Ok(observation)
     }
 
     /// Has the system evaluated at a time within the last step; the state stands in `scratch`.

@@ -1,24 +1,29 @@
 //! Events of the explicit engine: which are due, which lie in a step, and how to land on them.
 
 use super::flow::Gauge;
-use super::search::{Course, Place, Summit};
 use super::stepper::{Stepper, two_sum};
 use super::{Explicit, ExplicitError};
 use crate::dae::{Advance, Fault, System};
+use crate::engine::guard::{Found, Look, first_rise};
 use crate::scalar::Scalar;
 
-/// Partial steps that a landing, or the climb to a summit, may take.
-const MOST_PARTIAL_STEPS: usize = 80;
+/// Partial steps that a landing may take.
+const MOST_PARTIAL_STEPS: usize = 120;
+/// Partial steps of a landing after which its bracket is halved by every second one.
+const TRUSTED_STEPS: usize = 12;
 /// Tolerance of the first partial step of a landing.
 const FIRST_ACCURACY: f64 = 1e-8;
 /// What the last correction of a landing may leave, in units of the tolerance.
 const LEFT: f64 = 0.1;
-/// Change of a landing's length, as a fraction of the step, from which on Newton is trusted.
+/// Change of a landing's length, as a fraction of the step, from which on partial steps become
+/// more accurate.
 const CLOSE: f64 = 1e-2;
 /// Corrections after a landing on an event, each of which squares what is left.
 const MOST_CORRECTIONS: usize = 6;
 /// Tolerance of partial steps that need only tell a sign.
 const ROUGH: f64 = 1e-12;
+/// A value is of doubtful sign below this, in units of what the tolerance makes of it.
+const DOUBT: f64 = 1e3;
 
 /// How an approach stands to its zero at the begin of a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -42,16 +47,14 @@ pub(super) enum Target<S> {
     Time(S),
 }
 
-/// Something to land on, within a bracket.
+/// Something to land on, alone within a bracket.
 #[derive(Debug, Clone, Copy)]
 struct Candidate<S> {
     target: Target<S>,
-    /// Length of a step that leads beyond it.
-    reach: S,
-    /// Where it is thought to be, as a fraction of the reach.
-    guess: f64,
-    /// Whether the approach is zero at the begin of the step too.
-    leaving: bool,
+    /// Lengths of steps that lead before and beyond it.
+    bracket: [S; 2],
+    /// Where it is thought to be.
+    guess: S,
 }
 
 impl<S: Scalar, Y: System<S>> Explicit<S, Y> {
@@ -147,22 +150,28 @@ impl<S: Scalar, Y: System<S>> Explicit<S, Y> {
     }
 
     /// Looks for events in the step from `from` to `here`, and for its `end`; where there are
-    /// any, the step is cut at the first.
-    pub(super) fn meet_events(&mut self, end: S) -> Result<Advance, ExplicitError> {
-        let mut candidate = self.first_candidate(end)?;
+    /// any, the step is cut at the first. `None` if time has gone back: the step was too long.
+    pub(super) fn meet_events(&mut self, end: S) -> Result<Option<Advance>, ExplicitError> {
         let mut landed = None;
         for _ in 0..self.standing.len() + 3 {
-            let Some(Candidate { target, reach, guess, leaving }) = candidate else { break };
-            self.length = self.land(target, reach, guess, leaving)?;
+            let Some(Candidate { target, bracket, guess }) = self.first_candidate(landed, end)?
+            else {
+                break;
+            };
+            self.length = self.land(target, bracket, guess)?;
             std::mem::swap(&mut self.here, &mut self.probe);
             self.touch_down(target).map_err(|fault| self.fault(fault))?;
             landed = Some(target);
-            candidate = self.earlier_candidate(target, end);
+        }
+        let time = self.flow.time();
+        if self.here.y[time] < self.from.y[time] {
+            return Ok(None);
         }
         if let Some(target) = landed {
             self.fire(target);
         }
-        Ok(if self.fired.contains(&true) { Advance::Event } else { Advance::Stepped })
+        let event = self.fired.contains(&true);
+        Ok(Some(if event { Advance::Event } else { Advance::Stepped }))
     }
 
     /// Makes exact what was landed on, and evaluates the system there.
@@ -222,129 +231,117 @@ impl<S: Scalar, Y: System<S>> Explicit<S, Y> {
         }
     }
 
-    fn place(&self, k: usize, end: bool) -> Place {
-        let length = self.length.to_f64();
-        let (point, fraction) = if end { (&self.here, 1.0) } else { (&self.from, 0.0) };
-        let leaving = !end && self.standing[k] == Standing::Leaving;
-        let value = if leaving { 0.0 } else { point.approaches[k].to_f64() };
-        Place { fraction, value, rate: point.approach_rates[k].to_f64() * length }
-    }
-
-    fn first_candidate(&mut self, end: S) -> Result<Option<Candidate<S>>, ExplicitError> {
-        let mut first = self.end_candidate(end);
+    /// What comes first in the step, beside what it was cut at already.
+    fn first_candidate(
+        &mut self,
+        landed: Option<Target<S>>,
+        end: S,
+    ) -> Result<Option<Candidate<S>>, ExplicitError> {
+        let mut first = if self.here.y[self.flow.time()] > end { self.at_end(end) } else { None };
         for k in 0..self.standing.len() {
-            if self.is_watched(k) {
-                first = earlier_of(first, self.candidate(k)?);
+            if !self.is_watched(k) || landed == Some(Target::Event(k)) {
+                continue;
+            }
+            if let Some([low, high]) = self.first_rise(k)? {
+                let bracket = [low.0, high.0];
+                if first.is_none_or(|first: Candidate<S>| bracket[1] < first.bracket[1]) {
+                    let guess = low.0 + (high.0 - low.0) * S::from_f64(rise(low.1, high.1));
+                    first = Some(Candidate { target: Target::Event(k), bracket, guess });
+                }
             }
         }
         Ok(first)
     }
 
-    /// Other events that have come to pass before the place landed on.
-    fn earlier_candidate(&self, target: Target<S>, end: S) -> Option<Candidate<S>> {
-        let at_end = matches!(target, Target::Time(_));
-        let mut first = if at_end { None } else { self.end_candidate(end) };
-        for k in 0..self.standing.len() {
-            let other = self.is_watched(k) && target != Target::Event(k);
-            if !other || self.standing[k] == Standing::Passed {
-                continue;
-            }
-            let end = self.place(k, true);
-            if end.value > self.noise(self.here.approach_rates[k].to_f64()) {
-                let course = Course::new(self.place(k, false), end, std::iter::empty());
-                first = earlier_of(first, Some(self.rise(k, &course, 1.0)));
-            }
-        }
-        first
-    }
-
-    fn end_candidate(&self, end: S) -> Option<Candidate<S>> {
-        let time = self.here.y[self.flow.time()];
-        (time > end).then(|| Candidate {
+    fn at_end(&self, end: S) -> Option<Candidate<S>> {
+        Some(Candidate {
             target: Target::Time(end),
-            reach: self.length,
-            guess: self.place_of(end),
-            leaving: false,
+            bracket: [S::zero(), self.length],
+            guess: self.length * S::from_f64(self.place_of(end)),
         })
     }
 
-    fn rise(&self, k: usize, course: &Course, limit: f64) -> Candidate<S> {
-        Candidate {
-            target: Target::Event(k),
-            reach: self.length * S::from_f64(limit),
-            guess: course.first_rise(limit) / limit,
-            leaving: self.standing[k] == Standing::Leaving,
+    /// The first event of function k in the step, if there is one: places before and behind it,
+    /// and what was seen there.
+    fn first_rise(&mut self, k: usize) -> Result<Option<[(S, Look); 2]>, ExplicitError> {
+        let (mut begin, end) = (self.look_at_begin(k), self.look_at_end(k));
+        self.places.clear();
+        self.places.extend([(begin.at, S::zero()), (end.at, self.length)]);
+        match self.standing[k] {
+            // above zero: first it has to fall
+            Standing::Passed => {
+                let reversed = |look: Look| Look { course: look.course.reversed(), ..look };
+                let found = first_rise(reversed(begin), reversed(end), |at| {
+                    self.look(k, at).map(reversed)
+                })?;
+                let Found::Rise(_, fallen) = found else { return Ok(None) };
+                begin = reversed(fallen);
+            }
+            Standing::Leaving => begin.course.value = begin.course.value.min(0.0),
+            Standing::Below | Standing::Due => {}
+        }
+        match first_rise(begin, end, |at| self.look(k, at))? {
+            Found::Nothing => Ok(None),
+            Found::Unproven => {
+                self.tally.unproven += 1;
+                Ok(None)
+            }
+            Found::Rise(low, high) => {
+                Ok(Some([low, high].map(|look| (self.place_seen(look.at), look))))
+            }
         }
     }
 
-    /// The first event of function k in the step, if there is one.
-    fn candidate(&mut self, k: usize) -> Result<Option<Candidate<S>>, ExplicitError> {
-        if self.standing[k] == Standing::Passed {
-            return Ok(None);
-        }
-        let (begin, end) = (self.place(k, false), self.place(k, true));
-        if let Gauge::Root { .. } = self.flow.gauges()[k] {
-            let course = Course::new(begin, end, std::iter::empty());
-            return Ok((end.value >= 0.0).then(|| self.rise(k, &course, 1.0)));
-        }
-        let notes = self.flow.notes();
-        let climbing = begin.rate > 0.0 || notes.iter().any(|note| note.rates[k] > 0.0);
-        if end.value <= 0.0 && !climbing {
-            return Ok(None);
-        }
-        let mut rates = notes.iter().map(|note| note.rates[k]).chain([end.rate]);
-        if end.value <= 0.0 && rates.all(|rate| rate > 0.0) {
-            return Ok(None);
-        }
-        let length = self.length.to_f64();
-        let between = notes.iter().map(|note| (note.fraction, note.rates[k] * length));
-        let course = Course::new(begin, end, between);
-        let rises = end.value > 0.0;
-        let limit = if rises { course.first_rise(1.0) } else { 1.0 };
-        let summits: Vec<Summit> =
-            course.summits().filter(|summit| summit.fraction < limit).collect();
-        for summit in summits {
-            if let Some(above) = self.climb(k, summit)? {
-                return Ok(Some(self.rise(k, &course, above)));
-            }
-        }
-        Ok(rises.then(|| self.rise(k, &course, 1.0)))
+    /// A place of the step by what it was seen at: the time from the step's begin (s), for a root
+    /// the length.
+    fn place_seen(&self, at: f64) -> S {
+        let seen = self.places.iter().find(|(seen, _)| *seen == at);
+        seen.map_or(self.length, |(_, place)| *place)
     }
 
-    /// Climbs a summit by partial steps. Returns a place above zero, if there is one.
-    fn climb(&mut self, k: usize, summit: Summit) -> Result<Option<f64>, ExplicitError> {
-        let Summit { mut fraction, mut before, mut after } = summit;
-        let mut tolerance = self.options.tolerance.max(ROUGH);
-        let length = self.length.to_f64();
-        for _ in 0..MOST_PARTIAL_STEPS {
-            self.partial(self.length * S::from_f64(fraction), tolerance)?;
-            let (value, rate) = self.approach_at_probe(k)?;
-            let (value, rate) = (value.to_f64(), rate.to_f64() * length);
-            if value.abs() < 1e3 * tolerance && tolerance > self.options.tolerance {
-                tolerance = self.options.tolerance;
-                continue;
+    fn look_at_begin(&self, k: usize) -> Look {
+        Look { at: 0.0, course: self.from.courses[k] }
+    }
+
+    fn look_at_end(&self, k: usize) -> Look {
+        let time = self.flow.time();
+        let at = match self.flow.gauges()[k] {
+            Gauge::Root { .. } => self.length,
+            _ => self.here.y[time] - self.from.y[time],
+        };
+        Look { at: at.to_f64(), course: self.here.courses[k] }
+    }
+
+    /// What function k is near a place within the step; that place is kept.
+    fn look(&mut self, k: usize, at: f64) -> Result<Look, ExplicitError> {
+        let time = self.flow.time();
+        let by_length = matches!(self.flow.gauges()[k], Gauge::Root { .. });
+        let place = match by_length || self.flow.roots().is_empty() {
+            true => S::from_f64(at),
+            false => {
+                let then = self.from.y[time] + S::from_f64(at);
+                self.length * S::from_f64(self.place_of(then))
             }
-            if value > self.noise(0.0) {
-                return Ok(Some(fraction));
+        };
+        let tolerance = self.options.tolerance;
+        let mut accuracy = tolerance.max(ROUGH);
+        let course = loop {
+            self.partial(place, accuracy)?;
+            let evaluated = self.flow.evaluate(&self.probe.y);
+            evaluated
+                .map_err(|source| ExplicitError::System { time: self.step_begin(), source })?;
+            let course = self.flow.course(&self.probe.y, k);
+            if accuracy == tolerance || course.value.abs() > DOUBT * accuracy * course.grain {
+                break course;
             }
-            let here = Place { fraction, value, rate };
-            let other = if rate > 0.0 { after } else { before };
-            let bend = (rate - other.rate) / (fraction - other.fraction);
-            let more = if bend < 0.0 { -0.5 * rate * rate / bend } else { f64::INFINITY };
-            let width = after.fraction - before.fraction;
-            if more < 0.5 * value.abs() || width < 4.0 * f64::EPSILON {
-                return Ok(None);
-            }
-            if rate > 0.0 {
-                before = here
-            } else {
-                after = here
-            }
-            let share = before.rate / (before.rate - after.rate);
-            let share = share.clamp(0.05, 0.95);
-            fraction = before.fraction + share * (after.fraction - before.fraction);
-        }
-        Ok(None)
+            accuracy = tolerance;
+        };
+        let at = match by_length {
+            true => at,
+            false => (self.probe.y[time] - self.from.y[time]).to_f64(),
+        };
+        self.places.push((at, place));
+        Ok(Look { at, course })
     }
 
     /// Value and rate (per unit of τ) of an approach where the last partial step led.
@@ -373,52 +370,63 @@ impl<S: Scalar, Y: System<S>> Explicit<S, Y> {
         Ok(miss)
     }
 
-    /// Newton's iteration on the place in the step, safeguarded by a bracket, until a correction
-    /// to second order is all that is left. The partial steps are as accurate as the iteration
-    /// has become. Leaves the state in `probe` and returns its place, as a length from `from`.
+    /// Newton's iteration on the place in the step, kept in its bracket, until a correction to
+    /// second order is all that is left. The partial steps are as accurate as the iteration has
+    /// become. Leaves the state in `probe` and returns its place, as a length from `from`.
     pub(super) fn land(
         &mut self,
         target: Target<S>,
-        reach: S,
-        guess: f64,
-        leaving: bool,
+        bracket: [S; 2],
+        guess: S,
     ) -> Result<S, ExplicitError> {
-        let span = reach.to_f64();
+        let span = self.length.to_f64();
         let tolerance = self.options.tolerance;
         // a method of one order takes no cheaper partial steps
         let adapts = matches!(self.stepper, Stepper::Extrapolation(_));
         let roughest = if adapts { FIRST_ACCURACY.max(tolerance) } else { tolerance };
-        let (mut low, mut high) = (S::zero(), reach);
-        let mut at = Iterate { place: reach * S::from_f64(guess), accuracy: roughest };
+        let [mut low, mut high] = bracket;
+        let half = S::from_f64(0.5);
+        let mut at = Iterate { place: guess.max(low).min(high), accuracy: roughest };
         let mut last: Option<Iterate<S>> = None;
-        for _ in 0..MOST_PARTIAL_STEPS {
+        for count in 0..MOST_PARTIAL_STEPS {
             self.partial(at.place, at.accuracy)?;
             let (miss, rate) = self.miss(target)?;
-            let slope = if leaving { rate - miss / at.place } else { rate };
-            let change = -(miss / slope);
+            let change = -(miss / rate);
+            let aim = at.place + change;
             let size = change.to_f64().abs() / span;
             let done = size * size * at.doubt(last, span) <= LEFT * tolerance;
-            if at.accuracy == tolerance && done {
+            let inside = aim >= bracket[0] && aim <= bracket[1];
+            if at.accuracy == tolerance && done && inside {
                 return Ok(self.correct(at.place, last, miss, rate));
             }
-            let next = at.place + change;
-            if size < CLOSE {
-                // the sign of what is missed may be that of the partial step's error
-                let expected = (size * size).max(10.0 * at.accuracy);
-                let finish = expected * expected * (size + at.accuracy / size) < LEFT * tolerance;
-                let accuracy = if finish { tolerance } else { 1e-3 * expected * expected };
+            if miss > S::zero() {
+                high = high.min(at.place.max(low))
+            } else {
+                low = low.max(at.place.min(high))
+            }
+            if at.accuracy == tolerance && (high - low).to_f64() <= 4.0 * S::EPSILON * span {
+                // the bracket is the zero, to rounding
+                return Ok(at.place);
+            }
+            // close to the zero the sign of what is missed may be that of the partial step's error
+            let close = size < CLOSE && rate > S::zero();
+            let expected = (size * size).max(10.0 * at.accuracy);
+            let finish = expected * expected * (size + at.accuracy / size) < LEFT * tolerance;
+            let accuracy = match close {
+                true if finish => tolerance,
+                true => 1e-3 * expected * expected,
+                false => at.accuracy,
+            };
+            let accuracy = if count > TRUSTED_STEPS { tolerance } else { accuracy };
+            let newton =
+                if close && count <= TRUSTED_STEPS { inside } else { aim > low && aim < high };
+            let halves = count > TRUSTED_STEPS && count.is_multiple_of(2);
+            let place = if newton && !halves { aim } else { (low + high) * half };
+            if close && newton {
                 self.remember(rate);
                 last = Some(at);
-                at = Iterate { place: next, accuracy: accuracy.clamp(tolerance, roughest) };
-                continue;
             }
-            if miss > S::zero() {
-                high = at.place
-            } else {
-                low = at.place
-            }
-            let inside = next > low && next < high;
-            at.place = if inside { next } else { (low + high) * S::from_f64(0.5) };
+            at = Iterate { place, accuracy: accuracy.clamp(tolerance, roughest) };
         }
         let target = match target {
             Target::Event(k) => format!("the event of function {k}"),
@@ -471,11 +479,20 @@ impl<S: Scalar> Iterate<S> {
     }
 }
 
-/// The earlier of two candidates.
-fn earlier_of<S: Scalar>(a: Option<Candidate<S>>, b: Option<Candidate<S>>) -> Option<Candidate<S>> {
-    let place = |c: &Candidate<S>| c.guess * c.reach.to_f64();
-    match (a, b) {
-        (Some(a), Some(b)) => Some(if place(&b) < place(&a) { b } else { a }),
-        (a, b) => a.or(b),
+/// Where between two looks, as a share of the way, the cubic through them rises through zero.
+fn rise(from: Look, to: Look) -> f64 {
+    let (a, b, width) = (&from.course, &to.course, to.at - from.at);
+    let cubic = |s: f64| {
+        let r = 1.0 - s;
+        (1.0 + 2.0 * s) * r * r * a.value
+            + s * r * r * a.rate * width
+            + s * s * (3.0 - 2.0 * s) * b.value
+            - s * s * r * b.rate * width
+    };
+    let (mut low, mut high) = (0.0, 1.0);
+    for _ in 0..30 {
+        let middle = 0.5 * (low + high);
+        if cubic(middle) > 0.0 { high = middle } else { low = middle }
     }
+    0.5 * (low + high)
 }

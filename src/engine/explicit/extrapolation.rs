@@ -27,23 +27,18 @@ const LARGEST_GROWTH: f64 = 20.0;
 const LARGEST_CUT: f64 = 0.05;
 /// Logarithm of the error, in units of the tolerance, that is not worth another column.
 const HOPELESS: f64 = 4.0;
-/// Logarithm of the error, in units of the tolerance, from which the next column may do.
-const NEAR: f64 = 18.0;
 /// Columns over which the fall of the errors is taken.
 const SPAN: usize = 4;
 /// Columns beyond those reached that may be aimed at.
 const FORESIGHT: usize = 4;
 /// Columns beyond the number aimed at that are worth more than a new start.
 const EXTRA_COLUMNS: usize = 3;
-const LARGEST_NUMBER_OF_NOTES: usize = 16;
 
 /// How columns are to be added.
 #[derive(Debug, Clone, Copy)]
 struct Work {
     /// The last of them.
     last: usize,
-    /// Whether rates of the approaches are wanted.
-    noting: bool,
     /// Whether to go on to the last column, whatever the errors so far.
     hoping: bool,
 }
@@ -113,10 +108,9 @@ impl<S: Scalar> Extrapolation<S> {
         from: &Point<S>,
         length: S,
         norm: &Norm,
-        noting: bool,
     ) -> Result<Attempt, Fault> {
         let last = (self.aim + EXTRA_COLUMNS).min(self.weights.len());
-        let work = Work { last, noting, hoping: false };
+        let work = Work { last, hoping: false };
         let (reached, accepted) = self.build(flow, from, length, norm, work)?;
         if accepted {
             self.extrapolate(reached, flow.len());
@@ -133,7 +127,7 @@ impl<S: Scalar> Extrapolation<S> {
         length: S,
         norm: &Norm,
     ) -> Result<bool, Fault> {
-        let work = Work { last: self.weights.len(), noting: false, hoping: true };
+        let work = Work { last: self.weights.len(), hoping: true };
         let (reached, accepted) = self.build(flow, from, length, norm, work)?;
         self.extrapolate(reached, flow.len());
         Ok(accepted)
@@ -150,9 +144,7 @@ impl<S: Scalar> Extrapolation<S> {
         work: Work,
     ) -> Result<(usize, bool), Fault> {
         for k in 1..=work.last {
-            // only the last column's notes are wanted, and event rates are not free
-            let near = k <= SMALLEST_NUMBER_OF_COLUMNS || self.log(k - 1) < NEAR;
-            self.column(flow, from, length, k, work.noting && near)?;
+            self.column(flow, from, length, k)?;
             let error = if k == 1 { f64::INFINITY } else { self.estimate(k, norm, flow) };
             self.errors[k - 1] = error;
             if error <= 1.0 {
@@ -217,23 +209,17 @@ impl<S: Scalar> Extrapolation<S> {
         from: &Point<S>,
         length: S,
         k: usize,
-        noting: bool,
     ) -> Result<(), Fault> {
         let (controlled, len) = (flow.controlled(), flow.len());
         let steps = 2 * k;
         let step = length * self.fractions[k - 1];
         let double = step + step;
-        let stride = steps.div_ceil(LARGEST_NUMBER_OF_NOTES);
-        if noting {
-            // where the last column has none, those of an earlier one serve
-            flow.clear_notes();
-        }
         let mut now = std::mem::take(&mut self.columns[k - 1]);
         self.before[..len].fill(S::zero());
         for (now, rate) in now[..len].iter_mut().zip(&from.rates) {
             *now = step * *rate;
         }
-        for s in 1..steps {
+        for _ in 1..steps {
             for ((place, y), now) in self.place[..controlled].iter_mut().zip(&from.y).zip(&now) {
                 *place = *y + *now;
             }
@@ -242,9 +228,6 @@ impl<S: Scalar> Extrapolation<S> {
             if done.is_err() {
                 self.columns[k - 1] = now;
                 return done;
-            }
-            if noting && s % stride == 0 {
-                flow.note(s as f64 / steps as f64);
             }
         }
         self.columns[k - 1] = now;

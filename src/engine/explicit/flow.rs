@@ -18,7 +18,7 @@
 //! number of contacts at once. Where two roots are zero together the flow stands still, and it
 //! creeps where they tend to zero together; the engine steps over both.
 
-use crate::dae::{Carried, Direction, Fault, State, System, Turn, Watch};
+use crate::dae::{Carried, Course, Direction, Fault, State, System, Turn, Watch};
 use crate::plane::Vector;
 use crate::scalar::Scalar;
 
@@ -57,15 +57,6 @@ pub(super) enum Gauge {
     },
 }
 
-/// Rates of the approaches (per unit of τ) at one place of a step.
-#[derive(Debug, Clone)]
-pub(super) struct Note {
-    /// Place, as a fraction of the step.
-    pub fraction: f64,
-    /// Rate of each approach.
-    pub rates: Vec<f64>,
-}
-
 /// A system, with the bookkeeping of the vector y.
 pub(super) struct Flow<S, Y> {
     /// The system.
@@ -86,8 +77,6 @@ pub(super) struct Flow<S, Y> {
     offsets: Vec<Vector<S>>,
     offset_rates: Vec<Vector<S>>,
     values: Vec<S>,
-    notes: Vec<Note>,
-    notes_used: usize,
 }
 
 impl<S: Scalar, Y: System<S>> Flow<S, Y> {
@@ -111,8 +100,6 @@ impl<S: Scalar, Y: System<S>> Flow<S, Y> {
             offsets: vec![Vector::zero(); offsets],
             offset_rates: vec![Vector::zero(); offsets],
             values: vec![S::zero(); functions],
-            notes: Vec::new(),
-            notes_used: 0,
             evaluations: 0,
             system,
         }
@@ -402,32 +389,20 @@ impl<S: Scalar, Y: System<S>> Flow<S, Y> {
         }
     }
 
-    /// Whether any approach could rise and fall again unseen within a step.
-    pub fn wants_notes(&self) -> bool {
-        self.gauges.iter().any(|gauge| matches!(gauge, Gauge::Function { .. }))
-    }
-
-    /// Forgets what was noted.
-    pub fn clear_notes(&mut self) {
-        self.notes_used = 0;
-    }
-
-    /// Notes the rates of the approaches at the place last evaluated.
-    pub fn note(&mut self, fraction: f64) {
-        if self.notes_used == self.notes.len() {
-            self.notes.push(Note { fraction, rates: vec![0.0; self.gauges.len()] });
+    /// The course of the approach to event `k` at y, the place last evaluated: by time, that of a
+    /// root by τ.
+    pub fn course(&self, y: &[S], k: usize) -> Course {
+        match self.gauges[k] {
+            Gauge::Off => Course::NONE,
+            Gauge::Function { falling: false } => self.system.course(k),
+            Gauge::Function { falling: true } => self.system.course(k).reversed(),
+            Gauge::Root { slot } => Course {
+                value: -y[self.root(slot)].to_f64(),
+                rate: -self.root_rates[slot].to_f64(),
+                grain: 1.0,
+                ..Course::NONE
+            },
         }
-        for k in 0..self.gauges.len() {
-            let rate = self.approach_rate(k).to_f64();
-            self.notes[self.notes_used].rates[k] = rate;
-        }
-        self.notes[self.notes_used].fraction = fraction;
-        self.notes_used += 1;
-    }
-
-    /// What was noted, in the order of the places.
-    pub fn notes(&self) -> &[Note] {
-        &self.notes[..self.notes_used]
     }
 
     /// The degree of the root in which the solution is analytic beside the end of what is watched

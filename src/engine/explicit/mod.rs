@@ -12,8 +12,8 @@
 //!   next.
 //! - **Events** are met by steps that end on them: Newton on the length of the step, with partial
 //!   steps that grow as accurate as the iteration needs them. No interpolant comes near the state.
-//!   Rates at places within a step tell of events that begin and end inside it; partial steps
-//!   decide.
+//!   That a step holds no other event is proven by bounds ([`guard`](super::guard)), with partial
+//!   steps wherever those at its ends do not settle it.
 //! - **Errors** are weighed by component: the largest, in units of the size that
 //!   [`System::scales`] gives it, or of its own magnitude where that is larger by more than
 //!   rounding allows for. Integrals follow without a say.
@@ -90,6 +90,7 @@ struct Tally {
     partial: u64,
     events: u64,
     restarts: u64,
+    unproven: u64,
 }
 
 /// The explicit engine (see the module's header). Make it, `restart` it, then step.
@@ -122,6 +123,8 @@ pub struct Explicit<S: Scalar, Y: System<S>> {
     /// Directions watched since the last restart.
     armed: Vec<Direction>,
     fired: Vec<bool>,
+    /// Places of the last step that a search has looked at, by what they were seen at.
+    places: Vec<(f64, S)>,
     idle: u32,
     now: Snapshot<S>,
     tally: Tally,
@@ -167,6 +170,7 @@ impl<S: Scalar, Y: System<S>> Explicit<S, Y> {
             standing: vec![Standing::Passed; functions],
             armed: vec![Direction::Off; functions],
             fired: vec![false; functions],
+            places: Vec::new(),
             idle: 0,
             now,
             tally: Tally::default(),
@@ -203,6 +207,7 @@ impl<S: Scalar, Y: System<S>> Explicit<S, Y> {
         flow.rates(&here.y, &mut here.rates)?;
         for k in 0..here.approach_rates.len() {
             here.approach_rates[k] = flow.approach_rate(k);
+            here.courses[k] = flow.course(&here.y, k);
         }
         here.pace_rate = flow.pace_rate(&here.y);
         self.evaluated_here = true;
@@ -295,9 +300,7 @@ impl<S: Scalar, Y: System<S>> Explicit<S, Y> {
             let last = bare && self.next >= remaining.to_f64() * (1.0 - 1e-12);
             let length = if last { remaining } else { S::from_f64(self.next) };
             self.weigh(length.to_f64());
-            let noting = self.flow.wants_notes();
-            let attempt =
-                self.stepper.attempt(&mut self.flow, &self.from, length, &self.norm, noting);
+            let attempt = self.stepper.attempt(&mut self.flow, &self.from, length, &self.norm);
             let attempt = match attempt {
                 Ok(attempt) => attempt,
                 Err(fault) => {
@@ -328,7 +331,10 @@ impl<S: Scalar, Y: System<S>> Explicit<S, Y> {
                 }
             }
             self.length = length;
-            return self.meet_events(end);
+            match self.meet_events(end)? {
+                Some(advance) => return Ok(advance),
+                None => self.reject(length.to_f64() * 0.25),
+            }
         }
         Err(ExplicitError::StepTooSmall {
             time: self.time(),
@@ -466,8 +472,8 @@ impl<S: Scalar, Y: System<S>> Engine<S> for Explicit<S, Y> {
         if self.flow.roots().is_empty() {
             self.partial(time - began, self.options.tolerance)?;
         } else {
-            let guess = self.place_of(time);
-            self.land(Target::Time(time), self.length, guess, false)?;
+            let guess = self.length * S::from_f64(self.place_of(time));
+            self.land(Target::Time(time), [S::zero(), self.length], guess)?;
         }
         self.take_probe(at);
         at.time = time;
@@ -507,6 +513,7 @@ impl<S: Scalar, Y: System<S>> Engine<S> for Explicit<S, Y> {
             count("right_hand_sides", self.flow.evaluations),
             count("events", tally.events),
             count("restarts", tally.restarts),
+            count("unproven_steps", tally.unproven),
         ]
     }
 }

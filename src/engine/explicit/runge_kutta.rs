@@ -6,8 +6,6 @@ use super::stepper::{Attempt, Norm, Point};
 use crate::dae::{Fault, System};
 use crate::scalar::Scalar;
 
-/// Stages whose places are noted for the search for events.
-const NOTED: [usize; 2] = [7, 8];
 const SAFETY: f64 = 0.9;
 const LARGEST_GROWTH: f64 = 6.0;
 const LARGEST_CUT: f64 = 0.2;
@@ -45,7 +43,7 @@ impl<S: Scalar> RungeKutta<S> {
         from: &Point<S>,
         length: S,
     ) -> Result<bool, Fault> {
-        self.run(flow, from, length, false)?;
+        self.run(flow, from, length)?;
         Ok(true)
     }
 
@@ -56,9 +54,8 @@ impl<S: Scalar> RungeKutta<S> {
         from: &Point<S>,
         length: S,
         norm: &Norm,
-        noting: bool,
     ) -> Result<Attempt, Fault> {
-        self.run(flow, from, length, noting)?;
+        self.run(flow, from, length)?;
         let controlled = flow.controlled();
         let [fifth, third] = &mut self.errors;
         combine(FIFTH, length, &self.stages, None, &mut fifth[..controlled]);
@@ -82,21 +79,14 @@ impl<S: Scalar> RungeKutta<S> {
         flow: &mut Flow<S, Y>,
         from: &Point<S>,
         length: S,
-        noting: bool,
     ) -> Result<(), Fault> {
         let (controlled, len) = (flow.controlled(), flow.len());
         self.increment.resize(len, S::zero());
         self.stages[0][..len].copy_from_slice(&from.rates[..len]);
-        if noting {
-            flow.clear_notes();
-        }
-        for (s, stage) in STAGES.iter().enumerate() {
+        for (s, row) in STAGES.into_iter().enumerate() {
             let place = &mut self.place[..controlled];
-            combine(stage.row, length, &self.stages, Some(&from.y), place);
+            combine(row, length, &self.stages, Some(&from.y), place);
             flow.rates(&self.place, &mut self.stages[s + 1])?;
-            if noting && NOTED.contains(&(s + 1)) {
-                flow.note(stage.node);
-            }
         }
         combine(WEIGHTS, length, &self.stages, None, &mut self.increment);
         Ok(())

@@ -3,7 +3,7 @@
 use super::extrapolation::Extrapolation;
 use super::flow::Flow;
 use super::runge_kutta::RungeKutta;
-use crate::dae::{Fault, System};
+use crate::dae::{Course, Fault, System};
 use crate::scalar::Scalar;
 
 /// A place on the trajectory.
@@ -19,6 +19,8 @@ pub(super) struct Point<S> {
     pub approaches: Vec<S>,
     /// d/dτ of the approaches.
     pub approach_rates: Vec<S>,
+    /// Course of each approach.
+    pub courses: Vec<Course>,
     /// d²t/dτ².
     pub pace_rate: S,
 }
@@ -33,6 +35,7 @@ impl<S: Scalar> Point<S> {
             rates: zeros(components),
             approaches: zeros(functions),
             approach_rates: zeros(functions),
+            courses: vec![Course::NONE; functions],
             pace_rate: S::zero(),
         }
     }
@@ -97,18 +100,17 @@ pub(super) enum Stepper<S> {
 }
 
 impl<S: Scalar> Stepper<S> {
-    /// Tries a step from `from`; notes the rates of the approaches on the way if `noting`.
+    /// Tries a step from `from`.
     pub fn attempt<Y: System<S>>(
         &mut self,
         flow: &mut Flow<S, Y>,
         from: &Point<S>,
         length: S,
         norm: &Norm,
-        noting: bool,
     ) -> Result<Attempt, Fault> {
         match self {
-            Stepper::RungeKutta(method) => method.attempt(flow, from, length, norm, noting),
-            Stepper::Extrapolation(method) => method.attempt(flow, from, length, norm, noting),
+            Stepper::RungeKutta(method) => method.attempt(flow, from, length, norm),
+            Stepper::Extrapolation(method) => method.attempt(flow, from, length, norm),
         }
     }
 

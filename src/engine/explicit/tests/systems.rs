@@ -1,11 +1,18 @@
 //! Systems whose motion is known in closed form.
 
-use crate::dae::{Direction, Fault, State, System, Turn, Watch};
+use crate::dae::{Course, Direction, Fault, State, System, Turn, Watch};
 use crate::scalar::Scalar;
 
 /// A watch of power one.
 fn watch(direction: Direction) -> Watch {
     Watch { direction, power: 1.0 }
+}
+
+/// The course of a function of value, rate and second derivative g (1, 1/s, 1/s²), beside what
+/// third derivative the differences of the latter tell of.
+fn course<S: Scalar>(g: [S; 3]) -> Course {
+    let [value, rate, bend] = g.map(S::to_f64);
+    Course { value, rate, bend: Some(bend), grain: 1.0, noise: 1e3 * S::EPSILON, ..Course::NONE }
 }
 
 /// Oscillators q̈ = −ω² q, side by side; an event where the first passes `level`.
@@ -15,7 +22,7 @@ pub struct Oscillators<S> {
     pub watches: Vec<Watch>,
     scales: (Vec<f64>, Vec<f64>),
     accelerations: Vec<S>,
-    rate: S,
+    first: [S; 2],
 }
 
 impl<S: Scalar> Oscillators<S> {
@@ -26,7 +33,7 @@ impl<S: Scalar> Oscillators<S> {
             watches: vec![watch(direction)],
             scales: (vec![1.0; count], vec![omega.to_f64(); count]),
             accelerations: vec![S::zero(); count],
-            rate: S::zero(),
+            first: [S::zero(); 2],
         }
     }
 }
@@ -48,7 +55,7 @@ impl<S: Scalar> System<S> for Oscillators<S> {
         for (a, q) in self.accelerations.iter_mut().zip(state.q) {
             *a = -(self.square * *q);
         }
-        self.rate = state.v[0];
+        self.first = [state.q[0], state.v[0]];
         Ok(())
     }
     fn accelerations(&self) -> &[S] {
@@ -68,7 +75,14 @@ impl<S: Scalar> System<S> for Oscillators<S> {
         Ok(())
     }
     fn event_rate(&self, _: usize) -> S {
-        self.rate
+        self.first[1]
+    }
+    fn course(&self, _: usize) -> Course {
+        let [q, v] = self.first;
+        let [size, rate] = [q, v].map(|x| (self.square * x).abs().to_f64());
+        let square = self.square.to_f64();
+        let twist = [rate, square * size, square * rate];
+        Course { twist, ..course([q - self.level, v, self.accelerations[0]]) }
     }
     fn project(&mut self, _: S, _: &mut [S], _: &mut [S]) -> Result<f64, Fault> {
         Ok(0.0)
@@ -86,7 +100,7 @@ pub struct Pendulum<S> {
     pub cartesian: bool,
     accelerations: Vec<S>,
     lambda: Vec<S>,
-    rate: S,
+    first: [S; 2],
 }
 
 impl<S: Scalar> Pendulum<S> {
@@ -96,7 +110,7 @@ impl<S: Scalar> Pendulum<S> {
             cartesian,
             accelerations: vec![S::zero(); n],
             lambda: vec![S::zero(); n - 1],
-            rate: S::zero(),
+            first: [S::zero(); 2],
         }
     }
 
@@ -123,7 +137,7 @@ impl<S: Scalar> System<S> for Pendulum<S> {
     }
     fn evaluate(&mut self, state: State<'_, S>) -> Result<(), Fault> {
         let (q, v) = (state.q, state.v);
-        self.rate = v[0];
+        self.first = [q[0], v[0]];
         if self.cartesian {
             let square = q[0] * q[0] + q[1] * q[1];
             let lambda = (v[0] * v[0] + v[1] * v[1] - q[1]) / square;
@@ -154,7 +168,11 @@ impl<S: Scalar> System<S> for Pendulum<S> {
         Ok(())
     }
     fn event_rate(&self, _: usize) -> S {
-        self.rate
+        self.first[1]
+    }
+    fn course(&self, _: usize) -> Course {
+        let [q, v] = self.first;
+        course([q, v, self.accelerations[0]])
     }
     fn project(&mut self, _: S, _: &mut [S], _: &mut [S]) -> Result<f64, Fault> {
         Ok(0.0)
@@ -193,6 +211,7 @@ pub struct Balls<S> {
     scales: (Vec<f64>, Vec<f64>),
     accelerations: Vec<S>,
     powers: Vec<S>,
+    depths: Vec<S>,
     rates: Vec<S>,
 }
 
@@ -211,6 +230,7 @@ impl<S: Scalar> Balls<S> {
             scales: (vec![length; count], vec![1.0; count]),
             accelerations: vec![S::zero(); count],
             powers: vec![S::zero(); count],
+            depths: vec![S::zero(); count],
             rates: vec![S::zero(); count],
         }
     }
@@ -265,6 +285,7 @@ impl<S: Scalar> System<S> for Balls<S> {
         (&self.scales.0, &self.scales.1)
     }
     fn evaluate(&mut self, state: State<'_, S>) -> Result<(), Fault> {
+        self.depths.copy_from_slice(state.q);
         for (ball, (depth, rate)) in state.q.iter().zip(state.v).enumerate() {
             let depth = depth.max(S::zero());
             self.push(ball, depth, self.root(depth), *rate);
@@ -309,6 +330,9 @@ impl<S: Scalar> System<S> for Balls<S> {
     fn event_rate(&self, k: usize) -> S {
         self.rates[k] / self.length()
     }
+    fn course(&self, k: usize) -> Course {
+        course([self.depths[k], self.rates[k], self.accelerations[k]].map(|x| x / self.length()))
+    }
     fn project(&mut self, _: S, _: &mut [S], _: &mut [S]) -> Result<f64, Fault> {
         Ok(0.0)
     }
@@ -324,7 +348,7 @@ impl<S: Scalar> System<S> for Balls<S> {
 pub struct Throw<S> {
     pub acceleration: Vec<S>,
     watches: [Watch; 1],
-    rate: S,
+    state: [[S; 2]; 2],
 }
 
 impl<S: Scalar> Throw<S> {
@@ -332,7 +356,7 @@ impl<S: Scalar> Throw<S> {
         Throw {
             acceleration: acceleration.to_vec(),
             watches: [watch(Direction::Rising)],
-            rate: S::zero(),
+            state: [[S::zero(); 2]; 2],
         }
     }
 }
@@ -351,9 +375,7 @@ impl<S: Scalar> System<S> for Throw<S> {
         (&[1.0, 1.0], &[1.0, 1.0])
     }
     fn evaluate(&mut self, state: State<'_, S>) -> Result<(), Fault> {
-        let (q, v) = (state.q, state.v);
-        let radius = (q[0] * q[0] + q[1] * q[1]).sqrt();
-        self.rate = (q[0] * v[0] + q[1] * v[1]) / radius;
+        self.state = [[state.q[0], state.q[1]], [state.v[0], state.v[1]]];
         Ok(())
     }
     fn accelerations(&self) -> &[S] {
@@ -374,7 +396,13 @@ impl<S: Scalar> System<S> for Throw<S> {
         Ok(())
     }
     fn event_rate(&self, _: usize) -> S {
-        self.rate
+        let [q, v] = self.state;
+        dot(q, v) / dot(q, q).sqrt()
+    }
+    fn course(&self, _: usize) -> Course {
+        let ([q, v], a) = (self.state, [self.acceleration[0], self.acceleration[1]]);
+        let half = S::from_f64(0.5);
+        course([half * (dot(q, q) - S::one()), dot(q, v), dot(v, v) + dot(q, a)])
     }
     fn project(&mut self, _: S, _: &mut [S], _: &mut [S]) -> Result<f64, Fault> {
         Ok(0.0)
@@ -384,4 +412,8 @@ impl<S: Scalar> System<S> for Throw<S> {
     }
     fn turn_angles(&self, _: S, _: &[S], _: &mut [S]) {}
     fn turn_rates(&self, _: S, _: &[S], _: &mut [S]) {}
+}
+
+fn dot<S: Scalar>(a: [S; 2], b: [S; 2]) -> S {
+    a[0] * b[0] + a[1] * b[1]
 }

@@ -1,0 +1,123 @@
+//! How the event functions of a clearance joint may go on from a state.
+//!
+//! The depth is told of by the function
+//! ```text
+//! g = (e·e − c²) / 2c²,   ġ = e·ė / c²,   g̈ = (ė·ė + e·ë) / c²
+//! ```
+//! which has the sign of δ, is δ/c beside the wall, and is smooth at the bearing's centre too. Of its
+//! third derivative, (3 ė·ë + e·e⃛)/c², turning alone makes
+//! ```text
+//! |e⃛| ≤ j = |s_j| (|ω_j|³ + 3 |ω_j α_j|) + the same of i
+//! |ë| ≤ a + j t,  |ė| ≤ v + a t + …,  |e| ≤ e + v t + …
+//! ```
+//! at a time t from the state; what changing forces add, the search for events takes from
+//! differences of g̈.
+
+use super::{Clearance, EventSlot, Gap, GapRates, Mode};
+use crate::dae::Course;
+use crate::plane::{Motion, Pose, Vector};
+use crate::scalar::Scalar;
+
+/// Rounding of an event function, in units of the arithmetic's, beside that of coordinates.
+const ROUNDINGS: f64 = 1e3;
+
+/// The bodies of the mechanism at a state, by body.
+#[derive(Debug, Clone, Copy)]
+pub struct Bodies<'a, S> {
+    /// Poses.
+    pub poses: &'a [Pose<S>],
+    /// Motions.
+    pub motions: &'a [Motion<S>],
+    /// Accelerations.
+    pub accelerations: &'a [Motion<S>],
+}
+
+impl<S: Scalar> Clearance<S> {
+    /// The course of an event function. Whether the offset of the gap is `carried` by the engine,
+    /// and not a difference of coordinates, decides on its rounding.
+    pub fn course(
+        &self,
+        mode: &Mode<S>,
+        slot: EventSlot,
+        gap: &Gap<S>,
+        bodies: Bodies<'_, S>,
+        carried: bool,
+    ) -> Course {
+        if slot == EventSlot::Depth {
+            return self.depth_course(gap, bodies, carried);
+        }
+        let rates = self.rates(gap, bodies.motions);
+        let second = self.second_rates(gap, &rates, bodies.motions, bodies.accelerations);
+        let value = self.event_value(mode, slot, gap, || rates).to_f64();
+        let rate = self.event_rate(mode, slot, rates.rate, second).to_f64();
+        let grain = self.rate_grain(slot, mode, &rates, bodies);
+        Course { value, rate, grain, noise: S::EPSILON * (ROUNDINGS + 4.0 * grain), ..Course::NONE }
+    }
+
+    fn depth_course(&self, gap: &Gap<S>, bodies: Bodies<'_, S>, carried: bool) -> Course {
+        let square = S::one() / (self.radial * self.radial);
+        let half = S::from_f64(0.5);
+        let value = half * gap.depth * (gap.eccentricity + self.radial) * square;
+        let second = self.offset_second_rate(gap, bodies.motions, bodies.accelerations);
+        let rate = gap.offset.dot(gap.offset_rate) * square;
+        let bend = (gap.offset_rate.dot(gap.offset_rate) + gap.offset.dot(second)) * square;
+        let square = square.to_f64();
+        let [e, v, a] = [gap.eccentricity, gap.offset_rate.norm(), second.norm()].map(S::to_f64);
+        let j = self.turning_jerk(bodies);
+        let twist = [
+            (3.0 * v * a + e * j) * square,
+            (3.0 * a * a + 4.0 * v * j) * square,
+            5.0 * a * j * square,
+        ];
+        let (i, journal) = (self.pair.i, self.pair.j);
+        let reach = |body: usize, arm: Vector<S>| {
+            (bodies.poses[body].position.norm() + arm.norm()).to_f64()
+        };
+        let grain = (reach(i, gap.arm_i) + reach(journal, gap.arm_j)) / self.radial.to_f64();
+        let lost = if carried { 0.0 } else { 4.0 * grain };
+        let noise = S::EPSILON * (ROUNDINGS + lost);
+        Course {
+            value: value.to_f64(),
+            rate: rate.to_f64(),
+            bend: Some(bend.to_f64()),
+            twist,
+            grain,
+            noise,
+        }
+    }
+
+    /// What turning makes of e⃛ at the most (m/s³).
+    fn turning_jerk(&self, bodies: Bodies<'_, S>) -> f64 {
+        let of = |body: usize, arm: Vector<S>| {
+            let rate = bodies.motions[body].angular.to_f64().abs();
+            let second = bodies.accelerations[body].angular.to_f64().abs();
+            arm.norm().to_f64() * rate * (rate * rate + 3.0 * second)
+        };
+        of(self.pair.i, self.pair.s_i) + of(self.pair.j, self.pair.s_j)
+    }
+
+    /// What a relative error of the state makes of an event function of rates.
+    fn rate_grain(
+        &self,
+        slot: EventSlot,
+        mode: &Mode<S>,
+        rates: &GapRates<S>,
+        bodies: Bodies<'_, S>,
+    ) -> f64 {
+        let of = |body: usize, arm: Vector<S>, radius: S| {
+            let motion = &bodies.motions[body];
+            motion.linear.norm() + (arm.norm() + radius) * motion.angular.abs()
+        };
+        let speed = of(self.pair.i, self.pair.s_i, self.bearing_radius)
+            + of(self.pair.j, self.pair.s_j, self.journal_radius)
+            + rates.sweep.abs();
+        let per_speed = match (slot, mode, &self.friction) {
+            (EventSlot::Pull, Mode::Contact(contact), _) => {
+                self.normal.damping_weight() * contact.inverse_impact_rate
+            }
+            (_, _, Some(friction)) => S::one() / friction.v1(),
+            _ => S::zero(),
+        };
+        (speed * per_speed).to_f64()
+    }
+}

@@ -1,0 +1,191 @@
+//! What a run can see of its own errors: modes that contradict the geometry, energy from nowhere.
+//!
+//! The engines prove that they miss no event. This does not rely on it: a journal deep in the wall
+//! without a contact, a contact far from the wall, a contact that begins while journal and bearing
+//! part, or energy that comes from nowhere, end a run, whatever let them pass.
+
+use crate::mechanism::Observation;
+
+/// Depths (m) that are rounding, whatever the tolerance.
+const ROUNDING: f64 = 1e-12;
+/// What a state may be off by, in units of the tolerance times the size of the mechanism.
+const ERRORS: f64 = 1e3;
+/// Share of all energy seen that the balance may be off by.
+const ENERGY: f64 = 0.25;
+
+/// What cannot be.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum Contradiction {
+    /// Flight inside the wall.
+    #[error(
+        "the journal of {clearance} is {depth:.3e} m beyond its bearing's wall at t = {time:e} s, \
+         and no contact has begun: the engine has missed one; a smaller relative_tolerance or \
+         max_step may help"
+    )]
+    InTheWall {
+        /// Key of the joint.
+        clearance: String,
+        /// Penetration (m).
+        depth: f64,
+        /// Time (s).
+        time: f64,
+    },
+    /// A contact without touch.
+    #[error(
+        "the journal of {clearance} is {gap:.3e} m off its bearing's wall at t = {time:e} s, and \
+         its contact has not ended: the engine has missed that; a smaller relative_tolerance or \
+         max_step may help"
+    )]
+    OffTheWall {
+        /// Key of the joint.
+        clearance: String,
+        /// Distance from the wall (m).
+        gap: f64,
+        /// Time (s).
+        time: f64,
+    },
+    /// A contact that begins on the way out.
+    #[error(
+        "a contact of {clearance} begins at t = {time:e} s while journal and wall part at \
+         {rate:.3e} m/s: its begin was missed; a smaller relative_tolerance or max_step may help"
+    )]
+    BeginsParting {
+        /// Key of the joint.
+        clearance: String,
+        /// Speed at which they part (m/s).
+        rate: f64,
+        /// Time (s).
+        time: f64,
+    },
+    /// Energy from nowhere, or to nowhere.
+    #[error(
+        "the energy balance is off by {residual:.3e} J at t = {time:e} s, where the largest energy \
+         seen is {scale:.3e} J: the motion is none of this mechanism's any more; a smaller \
+         relative_tolerance may help"
+    )]
+    Energy {
+        /// Residual of the balance (J).
+        residual: f64,
+        /// Largest energy or work so far (J).
+        scale: f64,
+        /// Time (s).
+        time: f64,
+    },
+    /// Time that runs backwards.
+    #[error("a step led back in time, from t = {from:e} s to {to:e} s")]
+    TimeGoesBack {
+        /// Begin of the step (s).
+        from: f64,
+        /// Its end (s).
+        to: f64,
+    },
+}
+
+/// Follows a run (see the module's header).
+#[derive(Debug, Clone)]
+pub(super) struct Witness {
+    /// Keys of the joints with clearance.
+    names: Vec<String>,
+    /// What penetrations may be off by (m), and rates (m/s).
+    depth: f64,
+    rate: f64,
+    /// Largest energy or work seen (J).
+    energy: f64,
+}
+
+impl Witness {
+    /// A witness of a mechanism of this length (m) and speed (m/s), solved to this tolerance.
+    pub fn new(names: Vec<String>, length: f64, speed: f64, tolerance: f64) -> Self {
+        let errors = ERRORS * tolerance;
+        Witness { names, depth: ROUNDING + errors * length, rate: errors * speed, energy: 0.0 }
+    }
+
+    /// Looks at the mechanism at one time.
+    pub fn see(&mut self, seen: &Observation) -> Result<(), Contradiction> {
+        let time = seen.time;
+        for (k, clearance) in seen.clearances.iter().enumerate() {
+            let depth = clearance.penetration;
+            if clearance.in_contact && -depth > self.depth {
+                let clearance = self.names[k].clone();
+                return Err(Contradiction::OffTheWall { clearance, gap: -depth, time });
+            }
+            if !clearance.in_contact && depth > self.depth {
+                let clearance = self.names[k].clone();
+                return Err(Contradiction::InTheWall { clearance, depth, time });
+            }
+        }
+        self.balance(seen)
+    }
+
+    fn balance(&mut self, seen: &Observation) -> Result<(), Contradiction> {
+        let energy = &seen.energy;
+        let parts = [
+            energy.kinetic,
+            energy.elastic,
+            energy.dissipated,
+            energy.drive_work,
+            energy.load_work,
+            // potentials count from anywhere: what they change by is in the other terms
+            1e3 * f64::EPSILON * energy.potential,
+        ];
+        self.energy = parts.iter().fold(self.energy, |most, part| most.max(part.abs()));
+        let residual = energy.residual;
+        if residual.abs() > ENERGY * self.energy {
+            return Err(Contradiction::Energy { residual, scale: self.energy, time: seen.time });
+        }
+        Ok(())
+    }
+
+    /// Looks at a contact of clearance `k` that begins at a rate (m/s).
+    pub fn begins(&self, k: usize, rate: f64, time: f64) -> Result<(), Contradiction> {
+        if rate < -self.rate {
+            let clearance = self.names[k].clone();
+            return Err(Contradiction::BeginsParting { clearance, rate: -rate, time });
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mechanism::{ClearanceObservation, EnergyObservation};
+
+    fn witness() -> Witness {
+        Witness::new(vec!["A".into()], 0.1, 1.0, 1e-12)
+    }
+
+    fn seen(penetration: f64, in_contact: bool) -> Observation {
+        let clearance =
+            ClearanceObservation { penetration, in_contact, ..ClearanceObservation::default() };
+        Observation { time: 1.0, clearances: vec![clearance], ..Observation::default() }
+    }
+
+    #[test]
+    fn flight_in_the_wall_and_contact_off_it_are_seen() {
+        assert_eq!(witness().see(&seen(1e-13, false)), Ok(()));
+        assert_eq!(witness().see(&seen(1e-5, true)), Ok(()));
+        let found = witness().see(&seen(1e-8, false));
+        assert!(matches!(found, Err(Contradiction::InTheWall { .. })), "{found:?}");
+        let found = witness().see(&seen(-1e-8, true));
+        assert!(matches!(found, Err(Contradiction::OffTheWall { .. })), "{found:?}");
+    }
+
+    #[test]
+    fn energy_from_nowhere_is_seen() {
+        let at = |kinetic, residual| Observation {
+            energy: EnergyObservation { kinetic, residual, ..EnergyObservation::default() },
+            ..Observation::default()
+        };
+        assert_eq!(witness().see(&at(2.0, 1e-3)), Ok(()));
+        let found = witness().see(&at(2.0, 1.0));
+        assert!(matches!(found, Err(Contradiction::Energy { .. })), "{found:?}");
+    }
+
+    #[test]
+    fn a_contact_begins_on_the_way_in() {
+        assert_eq!(witness().begins(0, 1e-3, 1.0), Ok(()));
+        let found = witness().begins(0, -1e-3, 1.0);
+        assert!(matches!(found, Err(Contradiction::BeginsParting { .. })), "{found:?}");
+    }
+}
