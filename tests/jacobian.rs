@@ -60,7 +60,7 @@ fn modes<S: Scalar>(mechanism: &Mechanism<S>, clearance: usize) -> Vec<Mode<S>> 
     let mut modes = vec![Mode::Flight];
     for slip in [-1.0, -5e-3, 0.0, 5e-3, 1.0] {
         for (rate, pulling) in [(2.0, false), (1e-4, false), (0.5, true)] {
-            let contact = law.begin(S::from_f64(rate), S::from_f64(slip));
+            let contact = law.begin(S::from_f64(rate), S::from_f64(slip), S::zero());
             modes.push(Mode::Contact(Contact { pulling, ..contact }));
         }
     }

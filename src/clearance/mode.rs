@@ -60,14 +60,14 @@ impl<S: Scalar> Clearance<S> {
         slots
     }
 
-    /// A contact that begins at a rate (m/s) and slip (m/s).
-    pub fn begin(&self, rate: S, slip: S) -> Contact<S> {
+    /// A contact that begins at a rate (m/s) and slip (m/s), with the slip's acceleration (m/s²).
+    pub fn begin(&self, rate: S, slip: S, slip_acceleration: S) -> Contact<S> {
         let inverse_impact_rate = S::one() / rate.max(self.minimum_impact_rate);
         let factor = S::one() + self.normal.damping_weight() * rate * inverse_impact_rate;
         Contact {
             impact_rate: rate,
             inverse_impact_rate,
-            slip_region: self.friction.map(|friction| friction.region(slip)),
+            slip_region: self.friction.map(|friction| friction.region(slip, slip_acceleration)),
             pulling: factor < S::zero(),
         }
     }
@@ -142,24 +142,24 @@ impl<S: Scalar> Clearance<S> {
     }
 
     /// The mode after an event function has fired at a state. `rates` is asked for only where
-    /// e > 0.
+    /// e > 0; the acceleration of the slip (m/s²) comes with them.
     pub fn switched(
         &self,
         mode: &Mode<S>,
         slot: EventSlot,
-        rates: impl FnOnce() -> GapRates<S>,
+        rates: impl FnOnce() -> (GapRates<S>, S),
     ) -> Mode<S> {
         match (mode, slot) {
             (Mode::Flight, EventSlot::Depth) => {
-                let rates = rates();
-                Mode::Contact(self.begin(rates.rate, rates.slip))
+                let (rates, slip_acceleration) = rates();
+                Mode::Contact(self.begin(rates.rate, rates.slip, slip_acceleration))
             }
             (Mode::Contact(_), EventSlot::Depth) | (Mode::Flight, _) => Mode::Flight,
             (Mode::Contact(contact), EventSlot::Pull) => {
                 Mode::Contact(Contact { pulling: !contact.pulling, ..*contact })
             }
             (Mode::Contact(contact), edge) => {
-                let (slip, upward) = (rates().slip, edge == EventSlot::UpperEdge);
+                let (slip, upward) = (rates().0.slip, edge == EventSlot::UpperEdge);
                 let slip_region = (contact.slip_region.zip(self.friction))
                     .map(|(region, law)| law.beyond(region, upward, slip));
                 Mode::Contact(Contact { slip_region, ..*contact })

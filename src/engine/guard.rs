@@ -46,6 +46,12 @@ pub enum Found {
     Unproven,
 }
 
+/// Whether two looks are enough to tell that a function stays below zero between them.
+#[inline(always)]
+pub fn stays_below(begin: Look, end: Look) -> bool {
+    Panel::new(begin, end).stays_below()
+}
+
 /// The first rise of a function through zero between two places, the later of which is not before
 /// the earlier. `look` tells of the function near a place between, and where that is.
 ///

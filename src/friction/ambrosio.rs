@@ -78,17 +78,29 @@ impl<S: Scalar> Ambrosio<S> {
         }
     }
 
-    /// The region of a slip (m/s) about whose past nothing is known.
-    pub fn region(&self, slip: S) -> SlipRegion {
-        let (inner, outer) = match slip < S::zero() {
-            true => (RampBackward, Backward),
-            false => (RampForward, Forward),
+    /// The region of a slip (m/s) about whose past nothing is known. Neighbours overlap by the
+    /// hysteresis; there it is the one that the slip's acceleration (m/s²) leads into, for an
+    /// event function that is zero at a restart never passes zero.
+    pub fn region(&self, slip: S, acceleration: S) -> SlipRegion {
+        let holds = |region: &SlipRegion| {
+            let (lower, upper) = self.edges(*region);
+            lower <= slip && slip <= upper && !self.is_empty(*region)
         };
-        match slip.abs() {
-            s if s > self.v1 => outer,
-            s if s > self.v0 => inner,
-            _ => Still,
-        }
+        let (first, last) = (
+            ORDER.into_iter().find(holds).unwrap_or(RampForward),
+            ORDER.into_iter().rfind(holds).unwrap_or(RampForward),
+        );
+        // without an acceleration, the one on this side of zero
+        let upward = match acceleration == S::zero() {
+            true => slip < S::zero(),
+            false => acceleration > S::zero(),
+        };
+        if upward { last } else { first }
+    }
+
+    /// Whether a region holds no more than one slip.
+    fn is_empty(&self, region: SlipRegion) -> bool {
+        region == Still && self.v0 == S::zero()
     }
 
     /// The slips (m/s) at which a region is left, below and above; infinite where it has no edge.
@@ -109,16 +121,16 @@ impl<S: Scalar> Ambrosio<S> {
     /// of it the errors of the slip have left it.
     pub fn beyond(&self, region: SlipRegion, upward: bool, slip: S) -> SlipRegion {
         let mut index = ORDER.iter().position(|r| *r == region).unwrap_or(2);
-        let is_empty = |index: usize| ORDER[index] == Still && self.v0 == S::zero();
         if upward {
             index = (index + 1).min(ORDER.len() - 1);
-            while index + 1 < ORDER.len() && (is_empty(index) || slip > self.edges(ORDER[index]).1)
+            while index + 1 < ORDER.len()
+                && (self.is_empty(ORDER[index]) || slip > self.edges(ORDER[index]).1)
             {
                 index += 1;
             }
         } else {
             index = index.saturating_sub(1);
-            while index > 0 && (is_empty(index) || slip < self.edges(ORDER[index]).0) {
+            while index > 0 && (self.is_empty(ORDER[index]) || slip < self.edges(ORDER[index]).0) {
                 index -= 1;
             }
         }
@@ -138,13 +150,13 @@ mod tests {
     proptest! {
         #[test]
         fn force_opposes_slip_and_never_exceeds_coulomb(slip in -0.05..0.05f64) {
-            let (ratio, _) = law().ratio(law().region(slip), slip);
+            let (ratio, _) = law().ratio(law().region(slip, 0.0), slip);
             prop_assert!(ratio * slip <= 0.0 && ratio.abs() <= 0.1 * (1.0 + 1e-12));
         }
 
         #[test]
         fn opposite_slip_has_opposite_friction(slip in -0.05..0.05f64) {
-            let at = |slip| law().ratio(law().region(slip), slip);
+            let at = |slip| law().ratio(law().region(slip, 0.0), slip);
             prop_assert_eq!(at(slip).0, -at(-slip).0);
             prop_assert_eq!(at(slip).1, at(-slip).1);
         }
@@ -172,6 +184,25 @@ mod tests {
             prop_assert!(law().beyond(ORDER[at], true, met) != ORDER[at]);
             let met = law().edges(ORDER[at + 1]).0 + off;
             prop_assert!(law().beyond(ORDER[at + 1], false, met) != ORDER[at + 1]);
+        }
+    }
+
+    #[test]
+    fn a_slip_on_an_edge_belongs_where_its_acceleration_leads() {
+        for (slip, below, above) in [
+            (-1e-2, Backward, RampBackward),
+            (-1e-3, RampBackward, Still),
+            (1e-3, Still, RampForward),
+            (1e-2, RampForward, Forward),
+        ] {
+            assert_eq!(law().region(slip, -3.0), below, "{slip}");
+            assert_eq!(law().region(slip, 3.0), above, "{slip}");
+        }
+        let ramp = Ambrosio::new(0.1, 0.0, 1e-2, 1e-6);
+        for slip in [-1e-18, 0.0, 1e-18] {
+            assert_eq!(ramp.region(slip, -3.0), RampBackward);
+            assert_eq!(ramp.region(slip, 3.0), RampForward);
+            assert_ne!(ramp.region(slip, 0.0), Still);
         }
     }
 

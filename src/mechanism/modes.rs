@@ -52,7 +52,27 @@ impl<S: Scalar> Mechanism<S> {
             }
         }
         self.settle_resting(state, resting)?;
+        self.choose_slip_regions(state)?;
         self.watch();
+        Ok(())
+    }
+
+    /// Chooses the regions of friction of the contacts at the start once more, now that the
+    /// accelerations with these contacts can be known.
+    fn choose_slip_regions(&mut self, state: State<'_, S>) -> Result<(), Fault> {
+        if self.model.clearances().iter().all(|law| law.friction.is_none()) {
+            return Ok(());
+        }
+        self.evaluate(state)?;
+        let now = &self.now;
+        for ((law, mode), touch) in
+            self.model.clearances().iter().zip(&mut self.modes).zip(&now.touches)
+        {
+            let (Mode::Contact(contact), Some(touch)) = (mode, touch) else { continue };
+            let (gap, rates) = (&touch.gap, &touch.rates);
+            let (_, acceleration) = law.second_rates(gap, rates, &now.motions, &now.accelerations);
+            *contact = law.begin(contact.impact_rate, rates.slip, acceleration);
+        }
         Ok(())
     }
 
@@ -76,7 +96,7 @@ impl<S: Scalar> Mechanism<S> {
         let law = &self.model.clearances()[k];
         let gap = self.now.gap(k, law);
         let rates = law.rates(&gap, &self.now.motions);
-        self.modes[k] = Mode::Contact(law.begin(rates.rate, rates.slip));
+        self.modes[k] = Mode::Contact(law.begin(rates.rate, rates.slip, S::zero()));
     }
 
     /// Begins the contacts of journals that rest on the wall and would go outward. The force of
@@ -99,7 +119,7 @@ impl<S: Scalar> Mechanism<S> {
                 let gap = self.now.gap(k, law);
                 let rates = law.rates(&gap, &self.now.motions);
                 let rate = rates.rate.max(S::zero());
-                self.modes[k] = Mode::Contact(law.begin(rate, rates.slip));
+                self.modes[k] = Mode::Contact(law.begin(rate, rates.slip, S::zero()));
             }
             resting = open;
             resting.iter_mut().for_each(|resting| resting.outward = None);

@@ -33,6 +33,9 @@ use witness::Witness;
 /// Drift off the constraints that has the state projected and the engine restarted, over the
 /// mechanism's characteristic length.
 const DRIFT: f64 = 5e-12;
+/// Off by so many roundings of the largest coordinate is no drift: far from the origin no
+/// projection comes nearer.
+const DRIFT_ROUNDINGS: f64 = 16.0;
 /// Steps between two looks at the drift.
 const DRIFT_EVERY: u64 = 50;
 /// By how much, in units of the tolerance, an event function of order one may be beyond its zero
@@ -292,7 +295,9 @@ where
         }
         self.scratch.clone_from(self.engine.now());
         let drift = self.project()?;
-        if drift > DRIFT * self.engine.system().length() {
+        let largest = self.scratch.q.iter().fold(0.0, |q: f64, x| q.max(x.abs().to_f64()));
+        let rounding = DRIFT_ROUNDINGS * S::EPSILON * largest;
+        if drift > rounding.max(DRIFT * self.engine.system().length()) {
             let state = self.scratch.clone();
             self.restart(&state)?;
             self.segment += 1;

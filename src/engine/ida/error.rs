@@ -75,6 +75,23 @@ pub enum Error {
         /// The last complaint of the system, if it asked for shorter steps.
         source: Option<Fault>,
     },
+    /// The steps are so short that the end will not be reached.
+    #[error(
+        "the run has all but come to a stop at t = {now:e} s: at {step:.1e} s a step, {left:.0e} \
+         steps are left until {end:e} s; the tolerances ask for more than this motion holds (a \
+         velocity that dies away, a body that comes to rest): set \
+         solver.absolute_tolerance = \"scaled\", or loosen solver.relative_tolerance"
+    )]
+    TooSlow {
+        /// Time that was reached (s).
+        now: f64,
+        /// Mean length of the latest steps (s).
+        step: f64,
+        /// Time to be reached (s).
+        end: f64,
+        /// Steps that this would take.
+        left: f64,
+    },
     /// IDA gave up.
     #[error("IDA stopped at t = {time:e} s: {name} ({code}): {words} {advice}")]
     Stopped {
@@ -102,6 +119,11 @@ impl Error {
             OUR_BUG,
         ));
         Error::Stopped { time, name, code, words, advice, source }
+    }
+
+    /// Whether IDA failed to take a step that another order or length might take.
+    pub(super) fn is_rough(&self) -> bool {
+        matches!(self, Error::Stopped { code: -4 | -3, .. })
     }
 }
 

@@ -77,7 +77,7 @@ struct LinearSolver(SUNLinearSolver);
 
 impl Drop for LinearSolver {
     fn drop(&mut self) {
-        // SAFETY: made by `SUNLinSol_Dense`, freed once, after IDA.
+        // SAFETY: made by `SUNLinSol_Dense` or `own_linear_solver`, freed once, after IDA.
         unsafe { SUNLinSolFree(self.0) };
     }
 }
@@ -151,26 +151,24 @@ impl<Y: Dae> Solver<Y> {
         let between = clone_vector(&y)?;
         // SAFETY: the context is alive.
         let matrix = Matrix(made(unsafe { SUNDenseMatrix(size, size, context.0) }, "a matrix")?);
-        // SAFETY: vector, matrix and context are alive and of one size.
-        let linear_solver = unsafe { SUNLinSol_Dense(y.0, matrix.0, context.0) };
-        let linear_solver = LinearSolver(made(linear_solver, "a linear solver")?);
-        if !stock_vector_operations {
-            // SAFETY: a linear solver owns its table; nothing else refers to it.
-            let table = unsafe { &mut *(*linear_solver.0).ops };
-            table.setup = Some(invert);
-            table.solve = Some(multiply);
-        }
         // SAFETY: the context is alive.
         let memory = Memory(made(unsafe { IDACreate(context.0) }, "an integrator")?);
+        let linear_solver = if stock_vector_operations {
+            // SAFETY: vector, matrix and context are alive and of one size.
+            let linear_solver = unsafe { SUNLinSol_Dense(y.0, matrix.0, context.0) };
+            LinearSolver(made(linear_solver, "a linear solver")?)
+        } else {
+            own_linear_solver(&context, &memory, 2 * system.coordinates(), unknowns)?
+        };
         let shared = SharedBox(Box::into_raw(Box::new(Shared::new(system, weights))));
         let mut solver =
             Solver { memory, linear_solver, matrix, y, yp, between, shared, _context: context };
-        solver.set_up(max_step)?;
+        solver.set_up(max_step, stock_vector_operations)?;
         Ok(solver)
     }
 
     /// The calls that IDA wants once.
-    fn set_up(&mut self, max_step: f64) -> Result<(), Error> {
+    fn set_up(&mut self, max_step: f64, stock: bool) -> Result<(), Error> {
         let (ida, shared) = (self.memory.0, self.shared.0);
         let functions = self.shared().off.len() as c_int;
         let longest = if max_step.is_finite() { max_step } else { 0.0 };
@@ -183,6 +181,7 @@ impl<Y: Dae> Solver<Y> {
                 IDASetUserData(ida, shared.cast()),
                 IDAWFtolerances(ida, Some(weigh::<Y>)),
                 IDASetLinearSolver(ida, self.linear_solver.0, self.matrix.0),
+                IDASetLinearSolutionScaling(ida, c_int::from(stock)),
                 IDASetJacFn(ida, Some(jacobian::<Y>)),
                 IDASetMaxOrd(ida, 5),
                 IDASetMaxStep(ida, longest),
@@ -221,6 +220,11 @@ impl<Y: Dae> Solver<Y> {
         self.shared_mut().setback.take()
     }
 
+    /// How many steps asked for less error than rounding makes.
+    pub(super) fn floored(&self) -> u64 {
+        self.shared().weights.floored()
+    }
+
     /// How often IDA called back since it was made.
     pub(super) fn calls(&self) -> Calls {
         self.shared().calls
@@ -242,7 +246,9 @@ impl<Y: Dae> Solver<Y> {
     /// system's present modes.
     pub(super) fn reinitialize(&mut self, time: f64, first_step: f64) -> Result<(), Error> {
         let ida = self.memory.0;
-        let mut signs = self.shared_mut().watch();
+        let shared = self.shared_mut();
+        shared.weights.forget_rounding();
+        let mut signs = shared.watch();
         if !signs.is_empty() {
             // SAFETY: IDA copies the signs, one for each root function that it knows of.
             let flag = unsafe { IDASetRootDirection(ida, signs.as_mut_ptr()) };
@@ -516,20 +522,82 @@ unsafe extern "C" fn root_mean_square(x: N_Vector, w: N_Vector) -> f64 {
     unsafe { operations::root_mean_square(components(x), components(w)) }
 }
 
+/// What our linear solver knows.
+struct LinearContent {
+    /// The integrator that it solves for.
+    ida: *mut c_void,
+    /// c_j for which the matrix was inverted (1/s).
+    inverted_for: f64,
+    /// Place of the first multiplier among the unknowns.
+    multipliers_from: usize,
+    exchanges: Vec<usize>,
+    pivot_column: Vec<f64>,
+}
+
+/// A linear solver that works with the inverse of the matrix, and scales its solutions itself.
+fn own_linear_solver(
+    context: &Context,
+    memory: &Memory,
+    multipliers_from: usize,
+    unknowns: usize,
+) -> Result<LinearSolver, Error> {
+    // SAFETY: the context is alive.
+    let solver = made(unsafe { SUNLinSolNewEmpty(context.0) }, "a linear solver")?;
+    let content = LinearContent {
+        ida: memory.0,
+        inverted_for: f64::NAN,
+        multipliers_from,
+        exchanges: vec![0; unknowns],
+        pivot_column: vec![0.0; unknowns],
+    };
+    // SAFETY: a linear solver owns its table and content; nothing else refers to them yet.
+    unsafe {
+        (*solver).content = Box::into_raw(Box::new(content)).cast();
+        let table = &mut *(*solver).ops;
+        table.gettype = Some(is_direct);
+        table.setup = Some(invert);
+        table.solve = Some(multiply);
+        table.free = Some(free_own);
+    }
+    Ok(LinearSolver(solver))
+}
+
+unsafe extern "C" fn is_direct(_solver: SUNLinearSolver) -> SUNLinearSolver_Type {
+    SUNLinearSolver_Type_SUNLINEARSOLVER_DIRECT
+}
+
+unsafe extern "C" fn free_own(solver: SUNLinearSolver) -> c_int {
+    // SAFETY: called once, by `SUNLinSolFree`, on a solver of `own_linear_solver`.
+    unsafe {
+        drop(Box::from_raw((*solver).content.cast::<LinearContent>()));
+        (*solver).content = ptr::null_mut();
+        SUNLinSolFreeEmpty(solver);
+    }
+    SUNLS_SUCCESS as c_int
+}
+
 /// Replaces the matrix by its inverse.
-unsafe extern "C" fn invert(_solver: SUNLinearSolver, matrix: SUNMatrix) -> c_int {
-    // SAFETY: IDA calls with the square dense matrix of `Solver::new`, and does not use it itself.
+unsafe extern "C" fn invert(solver: SUNLinearSolver, matrix: SUNMatrix) -> c_int {
+    // SAFETY: IDA calls with the square dense matrix of `Solver::new`, and does not use it itself;
+    // the content is that of `own_linear_solver`, and its integrator is the one that calls.
     let regular = unsafe {
-        let n = SUNDenseMatrix_Columns(matrix) as usize;
+        let content = &mut *(*solver).content.cast::<LinearContent>();
+        IDAGetCurrentCj(content.ida, &mut content.inverted_for);
+        let n = content.exchanges.len();
         let numbers = slice::from_raw_parts_mut(SUNDenseMatrix_Data(matrix), n * n);
-        inverse::invert(numbers, &mut vec![0; n], &mut vec![0.0; n])
+        inverse::invert(numbers, &mut content.exchanges, &mut content.pivot_column)
     };
     if regular { SUNLS_SUCCESS as c_int } else { SUNLS_LUFACT_FAIL as c_int }
 }
 
 /// Solves with the inverse.
+///
+/// Where c_j has changed since the matrix was inverted, changes of q and v are scaled as IDA would
+/// scale all: by 2/(1 + c_j/c_j⁽⁰⁾). The multipliers are not: theirs follow accelerations, whose
+/// size does not depend on c_j. What IDA's scaling leaves of them no norm sees, and extrapolation
+/// makes it thirty times larger in the next step: they grew to 1e15 until no step was left.
 unsafe extern "C" fn multiply(
-    _solver: SUNLinearSolver,
+    solver: SUNLinearSolver,
     matrix: SUNMatrix,
     x: N_Vector,
     b: N_Vector,
@@ -537,9 +605,16 @@ unsafe extern "C" fn multiply(
 ) -> c_int {
     // SAFETY: as in `invert`, which was called before; the vectors are distinct and of its size.
     unsafe {
+        let content = &*(*solver).content.cast::<LinearContent>();
         let (x, b) = (components_mut(x), components(b));
         let numbers = slice::from_raw_parts(SUNDenseMatrix_Data(matrix), b.len() * b.len());
         inverse::multiply(numbers, b, x);
+        let mut cj = content.inverted_for;
+        IDAGetCurrentCj(content.ida, &mut cj);
+        let ratio = cj / content.inverted_for;
+        if ratio != 1.0 {
+            operations::scale_in_place(2.0 / (1.0 + ratio), &mut x[..content.multipliers_from]);
+        }
     }
     SUNLS_SUCCESS as c_int
 }

@@ -12,6 +12,7 @@
 //! differential/algebraic equation solvers, ACM TOMS 31 (2005) 363–396, and IDA's user guide.
 
 mod error;
+mod events;
 mod ffi;
 mod inverse;
 mod quadrature;
@@ -26,6 +27,7 @@ pub use error::Error;
 pub use tolerance::{AbsoluteTolerance, Norm};
 
 use crate::dae::{Advance, Count, Dae, Engine, Fault, Snapshot, State};
+use events::Events;
 use ffi::{Counters, Return, Solver};
 use quadrature::Quadrature;
 use tolerance::Weights;
@@ -36,6 +38,20 @@ const ROUNDINGS_AT_END: f64 = 100.0;
 /// This many steps in a row must lead further than this many roundings of the time each.
 const STALLED_STEPS: u32 = 1000;
 const STALLED_ROUNDINGS: f64 = 16.0;
+
+/// A run is given up when these many stretches of so many steps each were so short that the time
+/// left would take more than this many.
+const SLOW_STRETCHES: u32 = 3;
+const PACE_STEPS: u32 = 100_000;
+const MOST_STEPS: f64 = 1e10;
+
+/// A step that IDA cannot take is tried again from its begin, after a restart, so many times, each
+/// time with a first step that is this much shorter.
+const MOST_RECOVERIES: u32 = 4;
+const RECOVERY_STEP: f64 = 0.1;
+
+/// After so many good steps, a failure is a new one.
+const RECOVERED_STEPS: u32 = 50;
 
 /// The first step is at least this many roundings of the time.
 const FIRST_STEP_ROUNDINGS: f64 = 256.0;
@@ -104,11 +120,19 @@ pub struct Ida<Y: Dae> {
     /// Where the last step began.
     began: Snapshot<f64>,
     quadrature: Quadrature,
+    events: Events,
     fired: Vec<bool>,
     /// Stop time (s) that IDA knows.
     stop_time: Option<f64>,
     progress: Progress,
+    pace: Pace,
     restarts: u64,
+    /// How often a step that failed was mended by a restart.
+    recoveries: u64,
+    /// How many of them were the latest attempts at one place.
+    attempts: u32,
+    /// Steps since the latest of them.
+    steps_since: u32,
     /// What IDA counted before the last restart.
     earlier: Counters,
 }
@@ -134,6 +158,7 @@ impl<Y: Dae> Ida<Y> {
         let now = Snapshot::new(system.coordinates(), system.integrals());
         let quadrature = Quadrature::new(system.integrals(), typical_turning(system.scales()));
         let fired = vec![false; system.watches().len()];
+        let events = Events::new(fired.len());
         let stock = options.stock_vector_operations;
         Ok(Ida {
             solver: Solver::new(system, weights, options.max_step, stock)?,
@@ -142,10 +167,15 @@ impl<Y: Dae> Ida<Y> {
             began: now.clone(),
             now,
             quadrature,
+            events,
             fired,
             stop_time: None,
             progress: Progress::default(),
+            pace: Pace::default(),
             restarts: 0,
+            recoveries: 0,
+            attempts: 0,
+            steps_since: 0,
             earlier: Counters::default(),
         })
     }
@@ -161,6 +191,7 @@ impl<Y: Dae> Ida<Y> {
         self.began.clone_from(&self.now);
         self.fired.fill(false);
         self.evaluate()?;
+        self.arm();
         let n = self.now.q.len();
         let (system, now) = (self.solver.system_ref(), &self.now);
         self.quadrature.restart(now.time, system.powers(), &now.integrals);
@@ -174,7 +205,8 @@ impl<Y: Dae> Ida<Y> {
         yp[2 * n..].fill(0.0);
         self.earlier += self.solver.counters();
         let shortest = FIRST_STEP_ROUNDINGS * f64::EPSILON * now.time.abs();
-        self.solver.reinitialize(now.time, self.options.initial_step.max(shortest))?;
+        let first = self.options.initial_step * RECOVERY_STEP.powi(self.attempts as i32);
+        self.solver.reinitialize(now.time, first.max(shortest))?;
         self.stop_time = None;
         self.restarts += 1;
         self.phase = Phase::Running;
@@ -195,7 +227,7 @@ impl<Y: Dae> Ida<Y> {
             self.solver.set_stop_time(end)?;
             self.stop_time = Some(end);
         }
-        let (time, ended) = self.solver.step(end)?;
+        let (time, ended) = self.solve(end)?;
         if ended == Return::AtStopTime {
             self.stop_time = None;
         }
@@ -206,6 +238,8 @@ impl<Y: Dae> Ida<Y> {
         self.now.q.copy_from_slice(&y[..n]);
         self.now.v.copy_from_slice(&y[n..2 * n]);
         self.evaluate()?;
+        let event = self.meet_events(ended == Return::AtRoot)?;
+        let time = self.now.time;
         self.quadrature.advance(time, self.solver.system_ref().powers());
         if self.quadrature.wants_looks(time - self.began.time) {
             let gained = self.gather(time)?;
@@ -215,11 +249,69 @@ impl<Y: Dae> Ida<Y> {
         self.now.integrals.copy_from_slice(self.quadrature.totals());
         let setback = self.solver.take_setback();
         self.progress.made(time, setback)?;
-        if ended == Return::AtRoot {
-            self.solver.roots(&mut self.fired)?;
-            return Ok(Advance::Event);
+        self.pace.made(time, end, self.options.max_step)?;
+        Ok(if event { Advance::Event } else { Advance::Stepped })
+    }
+
+    /// Looks for events in the step to `self.now`, where IDA may have found a root, and goes back to
+    /// the first of them. Returns whether there is one.
+    fn meet_events(&mut self, at_root: bool) -> Result<bool, Error> {
+        if at_root {
+            self.solver.roots(&mut self.events.by_ida)?;
+        } else {
+            self.events.by_ida.fill(false);
         }
-        Ok(Advance::Stepped)
+        let found = self.find_event()?;
+        match found {
+            Some(first) if first < self.now.time - self.resolution() => {
+                self.events.between += 1;
+                self.go_back(first)?;
+                return Ok(true);
+            }
+            Some(_) => {
+                let ours = self.fired.iter_mut().zip(&self.events.by_ida);
+                ours.for_each(|(fired, by_ida)| *fired |= by_ida);
+            }
+            None => self.fired.copy_from_slice(&self.events.by_ida),
+        }
+        self.events.go_on();
+        Ok(at_root || found.is_some())
+    }
+
+    /// Goes back to a time (s) within IDA's last step.
+    fn go_back(&mut self, time: f64) -> Result<(), Error> {
+        let n = self.now.q.len();
+        let y = self.solver.interpolate(time)?;
+        self.now.time = time;
+        self.now.q.copy_from_slice(&y[..n]);
+        self.now.v.copy_from_slice(&y[n..2 * n]);
+        self.evaluate()
+    }
+
+    /// One step of IDA. One that fails for want of smoothness in what IDA remembers is tried again
+    /// without its memory, from where it began.
+    fn solve(&mut self, end: f64) -> Result<(f64, Return), Error> {
+        loop {
+            let error = match self.solver.step(end) {
+                Ok(done) => {
+                    self.steps_since = self.steps_since.saturating_add(1);
+                    if self.steps_since == RECOVERED_STEPS {
+                        self.attempts = 0;
+                    }
+                    return Ok(done);
+                }
+                Err(error) => error,
+            };
+            if !error.is_rough() || self.attempts >= MOST_RECOVERIES {
+                return Err(error);
+            }
+            self.attempts += 1;
+            self.steps_since = 0;
+            self.recoveries += 1;
+            self.begin()?;
+            self.solver.set_stop_time(end)?;
+            self.stop_time = Some(end);
+        }
     }
 
     /// Integrals (J) from the begin of IDA's last step to a time (s) within it, of powers inside it.
@@ -358,6 +450,10 @@ impl<Y: Dae> Engine<f64> for Ida<Y> {
             count("nonlinear_iterations", ida.nonlinear_iterations),
             count("nonlinear_convergence_failures", ida.nonlinear_convergence_failures),
             count("error_test_failures", ida.error_test_failures),
+            count("steps_at_rounding", self.solver.floored()),
+            count("recoveries", self.recoveries),
+            count("events_within_steps", self.events.between),
+            count("unproven_steps", self.events.unproven),
         ]
     }
 }
@@ -423,6 +519,36 @@ impl Progress {
         }
         let Progress { steps, mark: since, setback: source } = std::mem::take(self);
         Err(Error::NoProgress { steps, since, now: time, source })
+    }
+}
+
+/// Watches that the end can be reached.
+#[derive(Debug, Default)]
+struct Pace {
+    /// Steps since `mark`.
+    steps: u32,
+    /// Time (s) at which counting began.
+    mark: f64,
+    /// Stretches of steps in a row that led nowhere near far enough.
+    slow: u32,
+}
+
+impl Pace {
+    /// A step led to a time (s) on the way to an end (s), no step being longer than `max_step` (s).
+    fn made(&mut self, time: f64, end: f64, max_step: f64) -> Result<(), Error> {
+        self.steps += 1;
+        if self.steps < PACE_STEPS {
+            return Ok(());
+        }
+        let step = (time - self.mark).abs() / f64::from(self.steps);
+        let left = (end - time) / step;
+        let too_slow = left > MOST_STEPS && step < 0.01 * max_step;
+        self.slow = if too_slow { self.slow + 1 } else { 0 };
+        (self.steps, self.mark) = (0, time);
+        match self.slow >= SLOW_STRETCHES {
+            true => Err(Error::TooSlow { now: time, step, end, left }),
+            false => Ok(()),
+        }
     }
 }
 

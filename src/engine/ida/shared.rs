@@ -119,7 +119,9 @@ impl<Y: Dae> Shared<Y> {
     ) -> Result<(), Fault> {
         self.calls.jacobians += 1;
         let mut view = DMatrixViewMut::from_slice(columns, y.len(), y.len());
-        self.system.jacobian(time, y, yp, cj, &mut view)
+        self.system.jacobian(time, y, yp, cj, &mut view)?;
+        self.weights.know_rounding(y, cj, columns);
+        Ok(())
     }
 
     /// The event functions; IDA knows no shorter step when they fail, so every fault is final.

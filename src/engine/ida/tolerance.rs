@@ -11,6 +11,18 @@
 //! The multipliers λ follow from (q, v) and carry no error of their own from step to step: their
 //! weight is zero, so no norm sees them. (With tolerances of 1e-12 they would stop every run: they
 //! jump by more than that at the begin of a contact.)
+//!
+//! No tolerance can mean less than rounding makes. A coordinate is right to ε|q|, ε the rounding of
+//! doubles; through the forces (∂v̇/∂q, which is c/m times larger in a contact of stiffness c) and
+//! through the multipliers a step of length 1/c_j makes of it an error of
+//!
+//! ```text
+//! v:  ε (Σ |∂v̇/∂q| |q| + Σ |∂v̇/∂λ| |λ|) / c_j      but at most ε |q| c_j
+//! q:  that of v / c_j
+//! ```
+//!
+//! Where a and r|y| ask for less, as for a velocity that dies away under an absolute tolerance of
+//! 1e-20, that error is allowed, and the step counted; else steps would shrink with the velocity.
 
 use super::Error;
 
@@ -43,6 +55,12 @@ pub(super) struct Weights {
     /// Of q and v; none for λ.
     absolute: Vec<f64>,
     norm: Norm,
+    /// Typical sizes of q.
+    sizes: Vec<f64>,
+    /// What rounding makes of q and v in a step.
+    floor: Vec<f64>,
+    /// How often an error below the floor was asked for.
+    floored: u64,
 }
 
 impl Weights {
@@ -60,6 +78,7 @@ impl Weights {
                 must: "lie between 2.3e-16, the rounding of the arithmetic, and 1",
             });
         }
+        let own = scales.0.to_vec();
         let sizes = scales.0.iter().chain(scales.1);
         let absolute: Vec<f64> = match absolute {
             AbsoluteTolerance::Scalar(a) => sizes.map(|_| a).collect(),
@@ -71,7 +90,44 @@ impl Weights {
                 value,
                 must: "be at least 1e-100 and finite, for every coordinate and velocity",
             }),
-            None => Ok(Weights { relative, absolute, norm }),
+            None => {
+                let floor = vec![0.0; absolute.len()];
+                Ok(Weights { relative, absolute, norm, sizes: own, floor, floored: 0 })
+            }
+        }
+    }
+
+    /// How many steps asked for less error than rounding makes.
+    pub(super) fn floored(&self) -> u64 {
+        self.floored
+    }
+
+    /// Forgets what rounding makes, for the steps will be of another length.
+    pub(super) fn forget_rounding(&mut self) {
+        self.floor.fill(0.0);
+    }
+
+    /// Takes in what rounding makes of a step with c_j (1/s) near y = (q, v, λ), from the Jacobian
+    /// there, column by column.
+    pub(super) fn know_rounding(&mut self, y: &[f64], cj: f64, columns: &[f64]) {
+        let (size, n) = (y.len(), self.sizes.len());
+        let (floor_q, floor_v) = self.floor.split_at_mut(n);
+        floor_v.fill(0.0);
+        let mut add = |column: usize, rounding: f64| {
+            let entries = &columns[size * column + n..size * column + 2 * n];
+            floor_v.iter_mut().zip(entries).for_each(|(v, entry)| *v += rounding * entry.abs());
+        };
+        let rounding = |y: f64, size: f64| f64::EPSILON * y.abs().max(size);
+        for (j, typical) in self.sizes.iter().enumerate() {
+            add(j, rounding(y[j], *typical));
+        }
+        for (k, lambda) in y.iter().enumerate().skip(2 * n) {
+            add(k, rounding(*lambda, 0.0));
+        }
+        for (((q, v), y), typical) in floor_q.iter_mut().zip(floor_v).zip(y).zip(&self.sizes) {
+            // a step that is long for a stiff contact moves no further than rounding moves q
+            *q = (*v / cj / cj).min(rounding(*y, *typical));
+            *v = *q * cj;
         }
     }
 
@@ -81,15 +137,21 @@ impl Weights {
     }
 
     /// Writes the weights at y = (q, v, λ).
-    pub(super) fn fill(&self, y: &[f64], weights: &mut [f64]) {
+    pub(super) fn fill(&mut self, y: &[f64], weights: &mut [f64]) {
         let (differential, algebraic) = weights.split_at_mut(self.absolute.len());
-        let terms = differential.iter_mut().zip(y).zip(&self.absolute);
-        match self.norm {
-            Norm::Ode15s => {
-                terms.for_each(|((w, y), a)| *w = 1.0 / (self.relative * y.abs()).max(*a));
-            }
-            Norm::Wrms => terms.for_each(|((w, y), a)| *w = 1.0 / (self.relative * y.abs() + a)),
+        let mut below = false;
+        for (((w, y), a), floor) in
+            differential.iter_mut().zip(y).zip(&self.absolute).zip(&self.floor)
+        {
+            let relative = self.relative * y.abs();
+            let allowed = match self.norm {
+                Norm::Ode15s => relative.max(*a),
+                Norm::Wrms => relative + a,
+            };
+            below |= allowed < *floor;
+            *w = 1.0 / allowed.max(*floor);
         }
+        self.floored += u64::from(below);
         algebraic.fill(0.0);
     }
 }
@@ -99,7 +161,7 @@ mod tests {
     use super::*;
 
     fn weights(norm: Norm, absolute: AbsoluteTolerance, y: &[f64]) -> Vec<f64> {
-        let weights = Weights::new(1e-6, absolute, norm, (&[2.0], &[300.0])).unwrap();
+        let mut weights = Weights::new(1e-6, absolute, norm, (&[2.0], &[300.0])).unwrap();
         let mut w = vec![f64::NAN; y.len()];
         weights.fill(y, &mut w);
         w
@@ -111,6 +173,32 @@ mod tests {
         assert_eq!(weights(Norm::Ode15s, absolute, &[-1.0, 1e-3]), [1.0 / 1e-6, 1.0 / 1e-8]);
         let expected = [1.0 / (1e-6 + 1e-8), 1.0 / (1e-6 * 1e-3 + 1e-8)];
         assert_eq!(weights(Norm::Wrms, absolute, &[-1.0, 1e-3]), expected);
+    }
+
+    #[test]
+    fn no_tolerance_asks_for_less_than_rounding_makes() {
+        for norm in [Norm::Ode15s, Norm::Wrms] {
+            let tiny = AbsoluteTolerance::Scalar(1e-20);
+            let mut weights = Weights::new(1e-12, tiny, norm, (&[2.0], &[300.0])).unwrap();
+            let (y, cj, stiffness) = ([-3.0, 1e-15], 1e6, 1e8);
+            let mut w = [f64::NAN; 2];
+            weights.fill(&y, &mut w);
+            assert!(w[1] > 1e19 && weights.floored() == 0);
+            // Column by column: c_j, stiffness; −1, c_j.
+            weights.know_rounding(&y, cj, &[cj, stiffness, -1.0, cj]);
+            weights.fill(&y, &mut w);
+            let expected = f64::EPSILON * 3.0 * stiffness / cj;
+            assert!((w[1] * expected - 1.0).abs() < 1e-12, "{w:?}");
+            assert!((w[0] * 3e-12 - 1.0).abs() < 1e-7, "q has no need of it: {w:?}");
+            assert_eq!(weights.floored(), 1);
+            // Steps longer than the contact vibrates move the coordinate by its rounding.
+            weights.know_rounding(&y, 1e3, &[1e3, stiffness, -1.0, 1e3]);
+            weights.fill(&y, &mut w);
+            assert!((w[1] * f64::EPSILON * 3.0 * 1e3 - 1.0).abs() < 1e-12, "{w:?}");
+            weights.forget_rounding();
+            weights.fill(&y, &mut w);
+            assert!(w[1] > 1e19 && weights.floored() == 2);
+        }
     }
 
     #[test]
