@@ -278,9 +278,10 @@ impl<S: Scalar, Y: System<S>> Explicit<S, Y> {
         }
         self.places.clear();
         self.places.extend([(begin.at, S::zero()), (end.at, self.length)]);
+        let above = begin.course.value > begin.course.noise;
         match self.standing[k] {
-            // above zero: first it has to fall
-            Standing::Passed => {
+            // above zero, or left there by a projection: first it has to fall
+            Standing::Passed | Standing::Leaving if above => {
                 let reversed = |look: Look| Look { course: look.course.reversed(), ..look };
                 let found = first_rise(reversed(begin), reversed(end), |at| {
                     self.look(k, at).map(reversed)
@@ -288,8 +289,7 @@ impl<S: Scalar, Y: System<S>> Explicit<S, Y> {
                 let Found::Rise(_, fallen) = found else { return Ok(None) };
                 begin = reversed(fallen);
             }
-            Standing::Leaving => begin.course.value = begin.course.value.min(0.0),
-            Standing::Below | Standing::Due => {}
+            _ => begin.course.value = begin.course.value.min(0.0),
         }
         match first_rise(begin, end, |at| self.look(k, at))? {
             Found::Nothing => Ok(None),
