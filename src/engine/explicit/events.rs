@@ -220,16 +220,14 @@ impl<S: Scalar, Y: System<S>> Explicit<S, Y> {
     /// Marks the events at the place landed on: that one, and those which are zero with it.
     fn fire(&mut self, target: Target<S>) {
         for k in 0..self.fired.len() {
-            if !self.is_watched(k) || self.standing[k] == Standing::Passed {
-                continue;
-            }
+            let passed = !self.is_watched(k) || self.standing[k] == Standing::Passed;
             let value = self.here.approaches[k].to_f64();
             let rate = self.here.approach_rates[k].to_f64();
             let near = match target {
                 Target::Event(_) => value >= -self.noise(rate),
                 Target::Time(_) => value > 0.0,
             };
-            if target == Target::Event(k) || (near && rate > 0.0) {
+            if target == Target::Event(k) || (!passed && near && rate > 0.0) {
                 self.fired[k] = true;
                 self.standing[k] = Standing::Passed;
             }
