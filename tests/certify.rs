@@ -383,3 +383,23 @@ fn an_open_contact_has_its_largest_force_so_far() {
     assert!(contact.end.is_nan() && force > 100.0);
     assert!(contact.peak_force >= force * (1.0 - 1e-9), "{contact:?} and {force} N at the end");
 }
+
+#[test]
+fn the_other_engine_confirms_the_contacts_of_the_paper() {
+    for name in ["four-bar-a", "four-bar-b", "four-bar-c", "four-bar-a-friction"] {
+        let case = case(&format!("cases/{name}.toml"), &["run.duration=0.006"]);
+        let check =
+            told(certify::cross_check(&case, &mut |_: &Progress| ControlFlow::Continue(())));
+        assert_eq!((&check.disagreement, &check.stopped), (&None, &None), "{name}");
+        assert_eq!(check.until, 0.006, "{name}");
+        assert!(check.events > 5 && check.farthest < 1e-7, "{name}: {check:?}");
+    }
+}
+
+#[test]
+fn a_run_is_checked_by_the_other_engine_where_asked() {
+    let trial = Trial::new();
+    let checked = trial.checked("four-bar-c", &["run.duration=0.003"]);
+    assert_eq!(checked.code, 0, "{}", checked.err);
+    assert!(checked.out.contains("ida and explicit have the same"), "{}", checked.out);
+}

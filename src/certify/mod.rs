@@ -4,6 +4,7 @@
 //! companion is off, and by what it loses when written as doubles; a run by its distance from the
 //! reference and what the reference is wrong by.
 
+mod cross;
 mod growth;
 mod json;
 mod reference;
@@ -11,6 +12,7 @@ mod report;
 mod stored;
 mod tangent;
 
+pub use cross::{CrossCheck, Disagreement, check_run, cross_check};
 pub use reference::{Error, Growth, Stage, Stopped, Watch};
 pub use report::Told;
 pub use stored::NotAReference;
