@@ -72,6 +72,15 @@ pub enum Error {
     /// A reference run stopped before there was anything to certify.
     #[error(transparent)]
     Stopped(#[from] Stopped),
+    /// The two runs differ from their start on.
+    #[error(
+        "the reference runs at tolerances of {:e} and {:e} do not start with the same contacts",
+        tolerances[0], tolerances[1]
+    )]
+    DifferentStarts {
+        /// Tolerances of the tighter and of the looser run.
+        tolerances: [f64; 2],
+    },
     /// The case cannot be assembled in 71 digits.
     #[error(transparent)]
     Case(#[from] case::Error),
@@ -179,6 +188,9 @@ pub fn references(
     match pair {
         Pair { stopped: Some(stopped), apart, .. } if apart.is_empty() => {
             Err(Error::Stopped(stopped))
+        }
+        Pair { apart, tolerances, .. } if apart.is_empty() => {
+            Err(Error::DifferentStarts { tolerances })
         }
         pair => Ok(pair),
     }
