@@ -110,9 +110,14 @@ pub fn reference(
     let pair = reference::references(case, schedule, digits, watch)?;
     let growth = reference::growth(case, schedule, &pair, watch)?;
     let scales = pair.scales;
+    let mut grown: f64 = 1.0;
+    let mut factors = growth.factors.iter();
     let wrong = (pair.tight.samples.iter().zip(&pair.apart))
         .map(|(sample, apart)| {
-            scales.rounding(sample).zip(*apart, |lost, apart| lost + 2.0 * apart)
+            // what the start is off by, which no two runs from it show, grows along with them
+            grown = factors.next().map_or(grown, |factor| grown.max(*factor));
+            let shared = pair.start * grown;
+            scales.rounding(sample).zip(*apart, |lost, apart| lost + 2.0 * apart + shared)
         })
         .collect::<Vec<_>>();
     let whole = wrong.len() as u64 >= schedule.len();

@@ -46,6 +46,8 @@ pub struct Pair {
     pub apart: Vec<Parts<f64>>,
     /// Tolerances of the tighter and of the looser run.
     pub tolerances: [f64; 2],
+    /// What the start, which both share, may be off by, over its size.
+    pub start: f64,
     /// Scales of the tighter run.
     pub scales: Scales,
     /// The first event that only one of the two has, over the samples that both have.
@@ -226,6 +228,7 @@ fn pair(
 ) -> Result<Pair, Error> {
     let tolerances = [loose + APART, loose].map(|exponent| 10f64.powf(-exponent));
     let mechanism: Mechanism<F256> = assemble(case)?;
+    let start = mechanism.start_accuracy();
     let sizes = Sizes::of(&mechanism);
     let both = Mutex::new([Vec::new(), Vec::new()]);
     let parted = AtomicBool::new(false);
@@ -265,7 +268,7 @@ fn pair(
         let before = |sample: &Observation| sample.time < parting.event.time;
         apart.truncate(tight.samples.partition_point(before));
     }
-    Ok(Pair { tight, apart, tolerances, scales, parting, stopped })
+    Ok(Pair { tight, apart, tolerances, start, scales, parting, stopped })
 }
 
 /// One run; that the runs of a pair have parted is no error.
