@@ -130,9 +130,7 @@ impl<S: Scalar> Ambrosio<S> {
             }
         } else {
             index = index.saturating_sub(1);
-            while index > 0
-                && (self.is_empty(ORDER[index]) || slip < self.edges(ORDER[index]).0)
-            {
+            while index > 0 && (self.is_empty(ORDER[index]) || slip < self.edges(ORDER[index]).0) {
                 index -= 1;
             }
         }

@@ -271,8 +271,7 @@ impl<S: Scalar> Mechanism<S> {
         {
             let (Mode::Contact(contact), Some(touch)) = (mode, touch) else { continue };
             let (gap, rates) = (&touch.gap, &touch.rates);
-            let (_, acceleration) =
-                law.second_rates(gap, rates, &now.motions, &now.accelerations);
+            let (_, acceleration) = law.second_rates(gap, rates, &now.motions, &now.accelerations);
             *contact = law.begin(rates.rate, rates.slip, acceleration);
         }
         Ok(())
