@@ -1,6 +1,6 @@
 //! Small dense linear solves in any arithmetic.
 //!
-//! Matrices are square, row by row in one slice. nalgebra's decompositions want a number type
+//! Square matrices stand row by row in one slice. nalgebra's decompositions want a number type
 //! with far more functions than [`Scalar`] has, and the sizes here are those of a mechanism.
 
 use crate::scalar::Scalar;
@@ -77,33 +77,174 @@ fn solve_sized<S: Scalar>(factors: &[S], n: usize, b: &mut [S]) {
     }
 }
 
-/// Solves a general system in place by elimination with row pivoting; `a` is destroyed.
-pub fn solve_general<S: Scalar>(a: &mut [S], n: usize, b: &mut [S]) -> Result<(), Singular> {
-    for j in 0..n {
-        let pivot = (j..n)
-            .fold(j, |best, i| if a[i * n + j].abs() > a[best * n + j].abs() { i } else { best });
-        if a[pivot * n + j] == S::zero() || !a[pivot * n + j].is_finite() {
-            return Err(Singular { row: j });
+/// One row of a least-squares problem: coefficients a and error e of a·x + e.
+pub type Row<S> = (Vec<S>, S);
+
+/// Least-squares problems one after another, each over what those before it leave free:
+/// ```text
+/// minimise |A₁ x + e₁|, then |A₂ x + e₂| among the x that do, and so on
+/// ```
+/// by reflections alone: nothing is squared, so that a condition number counts once.
+#[derive(Debug, Clone)]
+pub struct Cascade<S> {
+    x: Vec<S>,
+    /// Orthonormal directions that are still free.
+    free: Vec<Vec<S>>,
+}
+
+impl<S: Scalar> Cascade<S> {
+    /// A cascade over n unknowns, all of them free and zero.
+    pub fn new(n: usize) -> Self {
+        let unit = |k: usize| (0..n).map(|i| S::from_f64(f64::from(u8::from(i == k)))).collect();
+        Cascade { x: vec![S::zero(); n], free: (0..n).map(unit).collect() }
+    }
+
+    /// The unknowns as they are now.
+    pub fn x(&self) -> &[S] {
+        &self.x
+    }
+
+    /// Minimises |A x + e| over what is free. Directions that a row sees with less than `least` of
+    /// its largest coefficients stay free. `bend` is the diagonal of a matrix D of second
+    /// derivatives: with it, ½|A x + e|² + ½ xᵀ D x is minimised, if that has a minimum.
+    ///
+    /// Returns the condition number: the largest row over what the last direction was seen with.
+    pub fn minimise(&mut self, rows: &[Row<S>], bend: Option<&[S]>, least: f64) -> f64 {
+        let mut along: Vec<Vec<S>> =
+            rows.iter().map(|(a, _)| self.free.iter().map(|z| dot(a, z)).collect()).collect();
+        let mut right: Vec<S> = rows.iter().map(|(a, e)| -(*e + dot(a, &self.x))).collect();
+        let size = rows.iter().map(|(a, _)| dot(a, a).to_f64().sqrt()).fold(0.0, f64::max);
+        let (rank, smallest) = self.turn(&mut along, &mut right, least * size);
+        if rank == 0 {
+            return 1.0;
         }
-        for k in 0..n {
-            a.swap(j * n + k, pivot * n + k);
+        triangulate(&mut along, &mut right, rank);
+        if let Some(bend) = bend {
+            self.straighten(&along, &mut right[..rank], bend);
         }
-        b.swap(j, pivot);
-        for i in j + 1..n {
-            let factor = a[i * n + j] / a[j * n + j];
-            for k in j + 1..n {
-                a[i * n + k] -= factor * a[j * n + k];
+        solve_upper(&along, &mut right[..rank]);
+        for (z, w) in self.free.drain(..rank).zip(&right) {
+            self.x.iter_mut().zip(z).for_each(|(x, z)| *x += *w * z);
+        }
+        size / smallest
+    }
+
+    /// Turns the free directions so that the first of them are those the rows see, the largest
+    /// row first. Returns their number, and what the last was seen with.
+    fn turn(&mut self, along: &mut [Vec<S>], right: &mut [S], least: f64) -> (usize, f64) {
+        let mut smallest = f64::INFINITY;
+        let most = along.len().min(self.free.len());
+        for j in 0..most {
+            let tail = |row: &Vec<S>| dot(&row[j..], &row[j..]);
+            let pivot = (j..along.len())
+                .fold(j, |best, i| if tail(&along[i]) > tail(&along[best]) { i } else { best });
+            let square = tail(&along[pivot]);
+            let seen = square.to_f64().sqrt();
+            if !(square > S::zero()) || seen <= least {
+                return (j, smallest);
             }
-            b[i] -= factor * b[j];
+            smallest = seen;
+            along.swap(j, pivot);
+            right.swap(j, pivot);
+            let Some(mirror) = Mirror::new(along[j][j..].to_vec()) else { return (j, smallest) };
+            along.iter_mut().for_each(|row| mirror.turn(&mut row[j..]));
+            for i in 0..self.x.len() {
+                let mut across: Vec<S> = self.free[j..].iter().map(|z| z[i]).collect();
+                mirror.turn(&mut across);
+                self.free[j..].iter_mut().zip(across).for_each(|(z, turned)| z[i] = turned);
+            }
+        }
+        (most, smallest)
+    }
+
+    /// Takes D into account where there is a minimum with it: (I + R⁻ᵀ D R⁻¹)⁻¹ (b − R⁻ᵀ D x), with
+    /// D along the directions seen.
+    fn straighten(&self, r: &[Vec<S>], right: &mut [S], bend: &[S]) {
+        let n = right.len();
+        let seen = &self.free[..n];
+        let bent = |a: &Vec<S>, b: &Vec<S>| {
+            let product = a.iter().zip(b).zip(bend);
+            product.fold(S::zero(), |sum, ((a, b), d)| sum + *a * *b * *d)
+        };
+        let mut columns: Vec<Vec<S>> =
+            seen.iter().map(|a| seen.iter().map(|b| bent(a, b)).collect()).collect();
+        for _ in 0..2 {
+            columns.iter_mut().for_each(|column| solve_lower(r, column));
+            columns = (0..n).map(|i| columns.iter().map(|column| column[i]).collect()).collect();
+        }
+        let mut matrix = columns.concat();
+        for i in 0..n {
+            matrix[i * n + i] += S::one();
+        }
+        if factor_symmetric(&mut matrix, n).is_ok() {
+            let bent: Vec<S> = self.x.iter().zip(bend).map(|(x, d)| *x * *d).collect();
+            let mut pull: Vec<S> = seen.iter().map(|z| dot(z, &bent)).collect();
+            solve_lower(r, &mut pull);
+            right.iter_mut().zip(pull).for_each(|(right, pull)| *right += -pull);
+            solve_symmetric(&matrix, n, right);
         }
     }
-    for i in (0..n).rev() {
-        for k in i + 1..n {
-            b[i] -= a[i * n + k] * b[k];
+}
+
+/// The reflection that takes a vector onto its first component.
+struct Mirror<S> {
+    v: Vec<S>,
+    /// 2/|v|².
+    weight: S,
+}
+
+impl<S: Scalar> Mirror<S> {
+    /// `None` for a vector without length.
+    fn new(mut v: Vec<S>) -> Option<Self> {
+        let square = dot(&v, &v);
+        if !(square > S::zero()) {
+            return None;
         }
-        b[i] = b[i] / a[i * n + i];
+        let length = square.sqrt();
+        let first = v.first_mut()?;
+        *first += if *first < S::zero() { -length } else { length };
+        let weight = S::from_f64(2.0) / dot(&v, &v);
+        Some(Mirror { v, weight })
     }
-    Ok(())
+
+    fn turn(&self, x: &mut [S]) {
+        let by = self.weight * dot(&self.v, x);
+        x.iter_mut().zip(&self.v).for_each(|(x, v)| *x += -(by * *v));
+    }
+}
+
+/// Makes rows upper triangular in their first n columns, the right side along with them.
+fn triangulate<S: Scalar>(rows: &mut [Vec<S>], right: &mut [S], n: usize) {
+    for j in 0..n {
+        let column = |rows: &[Vec<S>], c: usize| rows[j..].iter().map(|row| row[c]).collect();
+        let Some(mirror) = Mirror::new(column(rows, j)) else { continue };
+        for c in j..n {
+            let mut entries: Vec<S> = column(rows, c);
+            mirror.turn(&mut entries);
+            rows[j..].iter_mut().zip(entries).for_each(|(row, entry)| row[c] = entry);
+        }
+        mirror.turn(&mut right[j..]);
+    }
+}
+
+/// Solves R x = b in place; R stands above the diagonal of the first rows.
+fn solve_upper<S: Scalar>(r: &[Vec<S>], b: &mut [S]) {
+    for i in (0..b.len()).rev() {
+        let rest = dot(&r[i][i + 1..b.len()], &b[i + 1..]);
+        b[i] = (b[i] - rest) / r[i][i];
+    }
+}
+
+/// Solves Rᵀ x = b in place.
+fn solve_lower<S: Scalar>(r: &[Vec<S>], b: &mut [S]) {
+    for i in 0..b.len() {
+        let rest = (0..i).fold(S::zero(), |sum, k| sum + r[k][i] * b[k]);
+        b[i] = (b[i] - rest) / r[i][i];
+    }
+}
+
+fn dot<S: Scalar>(a: &[S], b: &[S]) -> S {
+    a.iter().zip(b).fold(S::zero(), |sum, (a, b)| sum + *a * *b)
 }
 
 #[cfg(test)]
@@ -138,19 +279,54 @@ mod tests {
         }
 
         #[test]
-        fn general_solves_undo_products(
-            g in proptest::collection::vec(-1.0..1.0f64, 25),
-            x in proptest::collection::vec(-1.0..1.0f64, 5),
+        fn a_later_problem_is_solved_among_the_solutions_of_the_earlier(
+            g in proptest::collection::vec(-1.0..1.0f64, 42),
         ) {
-            let n = 5;
-            let mut a: Vec<f64> = g;
-            for i in 0..n {
-                a[i * n + (i + 2) % n] += 4.0;
+            let rows: Vec<Row<f64>> = g.chunks(7).map(|r| (r[..6].to_vec(), r[6])).collect();
+            let of = |rows: &[Row<f64>], x: &[f64]| -> Vec<f64> {
+                rows.iter().map(|(a, e)| dot(a, x) + e).collect()
+            };
+            let mut cascade = Cascade::new(6);
+            // a third row that says what the first two say already
+            let mut first = rows[..2].to_vec();
+            let sum = rows[0].0.iter().zip(&rows[1].0).map(|(a, b)| a + b).collect();
+            first.push((sum, rows[0].1 + rows[1].1));
+            let condition = cascade.minimise(&first, None, 1e-12)
+                * cascade.minimise(&rows[2..4], None, 1e-12);
+            let least: Vec<Row<f64>> = (0..6)
+                .map(|k| ((0..6).map(|i| f64::from(u8::from(i == k)) * (k + 1) as f64).collect(), 0.1))
+                .collect();
+            cascade.minimise(&least, None, 0.0);
+            let x = cascade.x();
+            for left in of(&first, x).into_iter().chain(of(&rows[2..4], x)) {
+                prop_assert!(left.abs() < 1e-13 * condition, "{left:e}");
             }
-            let mut b = times(&a, n, &x);
-            solve_general(&mut a, n, &mut b).unwrap();
-            for (b, x) in b.iter().zip(&x) {
-                prop_assert!((b - x).abs() < 1e-11);
+            // the slope of the last lies across all that the others leave free
+            let slope: Vec<f64> =
+                (0..6).map(|k| (k + 1) as f64 * of(&least, x)[k]).collect();
+            let mut across = Cascade::new(4);
+            let rows: Vec<Row<f64>> = (0..6)
+                .map(|k| ((0..4).map(|r| rows[r].0[k]).collect(), slope[k]))
+                .collect();
+            across.minimise(&rows, None, 1e-12);
+            for left in of(&rows, across.x()) {
+                prop_assert!(left.abs() < 1e-11 * condition, "{left:e}");
+            }
+        }
+
+        #[test]
+        fn second_derivatives_move_the_minimum(
+            g in proptest::collection::vec(-1.0..1.0f64, 12),
+            bend in proptest::collection::vec(0.0..1.0f64, 3),
+        ) {
+            let rows: Vec<Row<f64>> = g.chunks(4).map(|r| (r[..3].to_vec(), r[3])).collect();
+            let mut cascade = Cascade::new(3);
+            let condition = cascade.minimise(&rows, Some(&bend), 1e-12);
+            let x = cascade.x();
+            for k in 0..3 {
+                let slope: f64 =
+                    rows.iter().map(|(a, e)| a[k] * (dot(a, x) + e)).sum::<f64>() + bend[k] * x[k];
+                prop_assert!(slope.abs() < 1e-13 * condition * condition, "{slope:e}");
             }
         }
     }

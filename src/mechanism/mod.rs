@@ -4,6 +4,7 @@
 mod balance;
 mod dae;
 mod layout;
+mod modes;
 mod observation;
 mod observe;
 mod place;
@@ -39,6 +40,7 @@ pub struct Mechanism<S> {
     watches: Vec<Watch>,
     start: Snapshot<S>,
     start_energy: S,
+    start_accuracy: f64,
     coordinate_scales: Vec<f64>,
     velocity_scales: Vec<f64>,
     length: f64,
@@ -138,6 +140,7 @@ impl<S: Scalar> Mechanism<S> {
             now: Evaluation::new(&model, &layout),
             start: Snapshot::new(layout.coordinates, 1 + model.clearances().len()),
             start_energy: S::zero(),
+            start_accuracy: 0.0,
             modes: vec![Mode::Flight; model.clearances().len()],
             slots,
             watches: Vec::new(),

@@ -63,7 +63,7 @@ impl<S: Scalar> Mechanism<S> {
         let (rate, slip) = self.gap_rates(k);
         let force = self.now.touches[k].as_ref().map(|touch| touch.force);
         ClearanceObservation {
-            offset: doubles(gap.offset),
+            offset: doubles(self.offset(k)),
             eccentricity: gap.eccentricity.to_f64(),
             penetration: gap.depth.to_f64(),
             penetration_rate: rate.to_f64(),

@@ -1,35 +1,54 @@
 //! Assembly: from rough poses to a start that satisfies every joint.
 //!
-//! Ideal joints, drives and fixed start keys hold exactly. Journals are centred in their bearings
-//! as nearly as these allow. What is left free stays near the rough poses and rates: keys that
-//! the case names far more than those it does not. One step of it is
-//! ```text
-//! minimise  |C + C_q dq|² + dqᵀ W dq   subject to   H + H_q dq = 0
-//! ```
-//! with the exact conditions H, the centring conditions C and a small mass-like weight W; it is
-//! repeated until nothing changes, at last without C, for the exact conditions have the last word
-//! where the two cannot both be met. Velocities are one such problem, linear, with the rates of
-//! the same conditions.
+//! What is wanted stands in ranks, each of which has its say only in what the ranks before it
+//! leave free:
+//!
+//! 1. ideal joints and drives hold;
+//! 2. fixed start keys hold;
+//! 3. journals are centred in their bearings, C = 0, or as nearly as can be: |C| is least;
+//! 4. what is still free changes least, by mass, and what the case names counts far more.
+//!
+//! Velocities are one such problem, linear: among the rates that the first three ranks allow, the
+//! start has those nearest to the rates that the case names (nought where it does not). Positions
+//! are found by Newton's method from the rough poses: each step is such a problem, for the change,
+//! and the limit of the steps is the start; until they are near it they end on coarse places, so
+//! that no rounding chooses the branch. Neither knows a small weight or a tolerance, so that it
+//! is the same start in every arithmetic, to the last places of each. Where |C| stays above nought
+//! its second derivatives are taken in, without which the steps would gain but a few digits each.
+//!
+//! The unknowns are lengths: angles are multiplied by the mechanism's length, so that condition
+//! numbers mean something.
 
 use super::Mechanism;
-use super::layout::{Origin, Row, key};
+use super::layout::{Origin, Role, Row, key};
 use crate::clearance::Mode;
 use crate::dae::{Fault, State, System};
 use crate::joint::{Constraint, Revolute};
-use crate::linear;
+use crate::linear::{self, Cascade};
 use crate::model::{Complaint, KeyPath, Start};
 use crate::scalar::Scalar;
 
 const MOST_STEPS: usize = 200;
-/// Weight of a named coordinate against a metre of eccentricity.
-const NAMED: f64 = 1e-6;
+/// First steps, which weigh centring against staying: what the case does not name goes first.
+const FIRST_STEPS: usize = 2;
 /// Weight of an unnamed coordinate against a named one.
 const UNNAMED: f64 = 1e-3;
-/// Keeps redundant but consistent conditions solvable.
-const SLACK: f64 = 1e-10;
-/// Steps that only the exact conditions have a say in: each gains the digits of SLACK and more,
-/// and 71 are wanted.
-const LAST_STEPS: usize = 6;
+/// A step of this size, over the mechanism's length, is on the branch, and taken whole.
+const NEAR: f64 = 1e-3;
+/// Places of coordinates are this far apart, over the mechanism's length, until steps are near: 2⁻²⁶.
+const COARSE: f64 = 1.0 / 67_108_864.0;
+/// Near steps that leave more than this of the one before are none of Newton's.
+const SLOW: f64 = 0.05;
+/// Steps that are not near by then want second derivatives too.
+const LATE: usize = 20;
+/// A condition seen by less than this in units of rounding, for each unknown, is not seen.
+const BLIND: f64 = 64.0;
+/// Passes that a linear problem is given to come to rest.
+const MOST_PASSES: usize = 8;
+/// Steps by which a derivative that is carried along follows its value.
+const FOLLOWING: usize = 2;
+/// A start that is not known to this share of itself is none.
+const LEAST_ACCURACY: f64 = 1e-4;
 
 /// A condition on one coordinate: it has this value.
 #[derive(Debug, Clone, Copy)]
@@ -38,11 +57,35 @@ struct Fixed<S> {
     value: S,
 }
 
-/// The conditions of one assembly problem, written out at a state.
+/// The conditions of one assembly problem, written out at a state, rank by rank. Columns are those
+/// of unknowns that are lengths (m), or their rates.
 struct Conditions<S> {
-    exact: Vec<(Vec<S>, S)>,
-    wished: Vec<(Vec<S>, S)>,
-    weights: Vec<S>,
+    joints: Vec<linear::Row<S>>,
+    fixed: Vec<linear::Row<S>>,
+    wished: Vec<linear::Row<S>>,
+    /// How far each unknown is from where it would be left: its coefficient is the root of its
+    /// weight.
+    near: Vec<linear::Row<S>>,
+    /// Second derivatives of ½|C|² under the exact conditions, where they are wanted.
+    bend: Option<Vec<S>>,
+}
+
+/// A change that meets conditions.
+struct Change<S> {
+    /// By unknown (m).
+    x: Vec<S>,
+    /// How many times an error of the conditions is multiplied in it.
+    condition: f64,
+}
+
+/// How well an assembly problem was solved.
+#[derive(Debug, Clone, Copy)]
+struct Solved {
+    /// What the last step still changed (m, m/s).
+    left: f64,
+    condition: f64,
+    /// Whether another step would be nothing but rounding.
+    at_rest: bool,
 }
 
 impl<S: Scalar> Mechanism<S> {
@@ -50,10 +93,61 @@ impl<S: Scalar> Mechanism<S> {
     pub(super) fn assemble(&mut self) -> Result<(), Vec<Complaint>> {
         self.length = characteristic_length(self);
         let mut q = self.named(|start| start.coordinates);
-        self.assemble_positions(&mut q);
+        let positions = self.assemble_positions(&mut q);
         self.check_positions(&q)?;
-        let v = self.assemble_velocities(&q)?;
+        let (v, velocities) = self.assemble_velocities(&q)?;
+        self.check_accuracy(&q, &v, positions, velocities)?;
         self.begin(&q, &v)
+    }
+
+    /// How far the start may be from the exact one, over the sizes of coordinates and velocities:
+    /// the rounding of the arithmetic times what the conditions make of it, and what the last
+    /// step changed.
+    pub fn start_accuracy(&self) -> f64 {
+        self.start_accuracy
+    }
+
+    /// Finds the accuracy of a start; complains if it is none.
+    fn check_accuracy(
+        &mut self,
+        q: &[S],
+        v: &[S],
+        positions: Solved,
+        velocities: Solved,
+    ) -> Result<(), Vec<Complaint>> {
+        let scales = self.column_scales();
+        let largest = |x: &[S], least: f64| {
+            let sizes = x.iter().zip(&scales).map(|(x, scale)| x.abs().to_f64() / scale.to_f64());
+            sizes.fold(least, f64::max)
+        };
+        let rounding = 4.0 * S::EPSILON * largest(q, self.length) / self.length;
+        let of_positions = rounding * positions.condition + positions.left / self.length;
+        // an error of the positions turns the conditions of the velocities
+        let of_velocities = velocities.condition * (rounding + of_positions)
+            + velocities.left / largest(v, f64::MIN_POSITIVE);
+        self.start_accuracy = of_positions.max(of_velocities);
+        let complain = |message| Err(vec![Complaint { key: KeyPath::new(["start"]), message }]);
+        if !(positions.at_rest && velocities.at_rest) {
+            return complain(format!(
+                "the assembly does not come to rest: its last step still moved a body by {:.1e} m; \
+                 name poses nearer to those in which the mechanism closes",
+                positions.left.max(velocities.left)
+            ));
+        }
+        if !(self.start_accuracy <= LEAST_ACCURACY) {
+            return complain(format!(
+                "the mechanism starts in a singular position (a dead centre), or too near to one: \
+                 this arithmetic knows positions there to {of_positions:.1e} and rates to \
+                 {of_velocities:.1e} of themselves; start elsewhere"
+            ));
+        }
+        Ok(())
+    }
+
+    /// What a metre of each unknown is in its coordinate (m, rad).
+    fn column_scales(&self) -> Vec<S> {
+        let turning = S::one() / S::from_f64(self.length);
+        [S::one(), S::one(), turning].repeat(self.layout.coordinates / 3)
     }
 
     /// Changes the start by about `share` of itself, and back onto the constraints: a coordinate
@@ -115,18 +209,19 @@ impl<S: Scalar> Mechanism<S> {
         fixed
     }
 
-    /// Weights W: masses over the largest, far smaller where the case names nothing.
+    /// Roots of the weights by which unknowns stay where they are: masses over the largest, far
+    /// smaller where the case names nothing.
     fn weights(&self, of: fn(&Start<S>) -> [Option<S>; 3]) -> Vec<S> {
         let masses = self.free_bodies().map(|(body, _)| self.model.masses()[body]);
         let largest = masses.fold(S::zero(), |largest, mass| largest.max(mass));
-        let mut weights = vec![S::one(); self.layout.coordinates];
+        let mut weights = self.column_scales();
         for (body, at) in self.free_bodies() {
             let start = of(&self.model.starts()[body - 1]);
             let mass = self.model.masses()[body];
             let inertia = self.model.inertias()[body];
             for (c, value) in [mass, mass, inertia].into_iter().enumerate() {
                 let named = if start[c].is_some() { 1.0 } else { UNNAMED };
-                weights[at + c] = value / largest * S::from_f64(NAMED * named);
+                weights[at + c] *= (value / largest * S::from_f64(named)).sqrt();
             }
         }
         weights
@@ -144,89 +239,189 @@ impl<S: Scalar> Mechanism<S> {
     }
 
     /// Moves q to the assembled positions, as nearly as they can be reached.
-    fn assemble_positions(&mut self, q: &mut [S]) {
+    fn assemble_positions(&mut self, q: &mut [S]) -> Solved {
         let fixed = self.fixed(|start| start.coordinates);
         for fixed in &fixed {
             q[fixed.at] = fixed.value;
         }
-        self.approach(q, &fixed);
-        for _ in 0..LAST_STEPS {
-            let mut conditions = self.position_conditions(q, &fixed);
-            conditions.wished.clear();
-            let Some(change) = conditions.change() else { return };
-            q.iter_mut().zip(change).for_each(|(q, change)| *q += change);
+        let solved = self.approach(q, &fixed);
+        self.hold(q, &fixed);
+        solved
+    }
+
+    /// Takes what is fixed as it is written, where it is off by rounding only.
+    fn hold(&self, x: &mut [S], fixed: &[Fixed<S>]) {
+        for fixed in fixed {
+            let rounding = 1e3 * S::EPSILON * fixed.value.abs().to_f64().max(self.length);
+            if (x[fixed.at] - fixed.value).abs().to_f64() <= rounding {
+                x[fixed.at] = fixed.value;
+            }
         }
     }
 
-    /// Moves q until exact conditions and wishes are met as nearly as they can be together.
-    fn approach(&mut self, q: &mut [S], fixed: &[Fixed<S>]) {
-        let done = S::from_f64(4.0 * S::EPSILON * self.length);
+    /// Moves q by Newton steps until they change nothing. A step that makes things worse is
+    /// halved, until the steps are near.
+    fn approach(&mut self, q: &mut [S], fixed: &[Fixed<S>]) -> Solved {
+        let scales = self.column_scales();
+        let near = NEAR * self.length;
+        let mut solved = Solved { left: f64::INFINITY, condition: 1.0, at_rest: false };
+        let (mut slow, mut following) = (false, 0);
         for step in 0..MOST_STEPS {
             let mut conditions = self.position_conditions(q, fixed);
-            if step < 2 {
-                // what the case does not name goes first
-                let heavy = S::from_f64(1.0 / NAMED);
-                conditions.weights.iter_mut().for_each(|weight| *weight *= heavy);
+            if slow {
+                conditions.bend = Some(self.bend(&conditions));
             }
-            let before = conditions.error();
-            let Some(change) = conditions.change() else { return };
-            let mut fraction = S::one();
-            let mut best = q.to_vec();
-            for _ in 0..12 {
-                for (k, x) in best.iter_mut().enumerate() {
-                    *x = q[k] + fraction * change[k];
-                }
-                if self.position_conditions(&best, fixed).error() <= before {
+            let Some(change) = conditions.change(step < FIRST_STEPS) else { break };
+            let whole = change.size();
+            let fraction = if whole <= near {
+                S::one()
+            } else {
+                self.fraction(q, &change, fixed, conditions.error())
+            };
+            for (k, x) in q.iter_mut().enumerate() {
+                *x += fraction * change.x[k] * scales[k];
+            }
+            if whole > near {
+                self.coarsen(q, fixed);
+            }
+            let moved = whole * fraction.to_f64();
+            let rounding = S::EPSILON * q.iter().fold(self.length, |l, x| l.max(x.abs().to_f64()));
+            let no_gain = moved > 0.9 * solved.left && moved <= 1e3 * rounding * change.condition;
+            let last = std::mem::replace(
+                &mut solved,
+                Solved { left: moved, condition: change.condition, at_rest: false },
+            );
+            if step < FIRST_STEPS {
+                continue;
+            }
+            if moved <= 4.0 * rounding || no_gain {
+                solved.at_rest = true;
+                following += 1;
+                if !S::CARRIES_DERIVATIVE || following > FOLLOWING {
                     break;
                 }
-                fraction *= S::from_f64(0.5);
             }
-            let moved = change.iter().fold(S::zero(), |most, x| most.max(x.abs())) * fraction;
-            q.copy_from_slice(&best);
-            if step >= 2 && moved <= done {
-                return;
+            slow |= (moved <= near && moved > SLOW * last.left) || step >= LATE;
+        }
+        solved
+    }
+
+    /// Takes what is not fixed to the nearest of coarse places, the same in every arithmetic: far
+    /// from where the mechanism closes steps multiply rounding, and might choose another branch.
+    fn coarsen(&self, q: &mut [S], fixed: &[Fixed<S>]) {
+        for (k, x) in q.iter_mut().enumerate() {
+            let size = if k % 3 == 2 { 1.0 } else { self.length.log2().floor().exp2() };
+            let coarse = COARSE * size;
+            if fixed.iter().all(|fixed| fixed.at != k) && x.is_finite() {
+                *x = S::from_f64((x.to_f64() / coarse).round() * coarse);
             }
         }
+    }
+
+    /// The fraction of a change, of halves, that makes things no worse than they were.
+    fn fraction(&mut self, q: &[S], change: &Change<S>, fixed: &[Fixed<S>], before: S) -> S {
+        let scales = self.column_scales();
+        let mut fraction = S::one();
+        for _ in 0..12 {
+            let moved = (0..q.len()).map(|k| q[k] + fraction * change.x[k] * scales[k]);
+            let there: Vec<S> = moved.collect();
+            if self.position_conditions(&there, fixed).error() <= before {
+                break;
+            }
+            fraction *= S::from_f64(0.5);
+        }
+        fraction
     }
 
     fn position_conditions(&mut self, q: &[S], fixed: &[Fixed<S>]) -> Conditions<S> {
         let rest = vec![S::zero(); q.len()];
         self.place(&State { time: S::zero(), q, v: &rest, carried: None });
+        let from_fixed = |fixed: &Fixed<S>| q[fixed.at] - fixed.value;
+        let away = vec![S::zero(); q.len()];
         let weights = self.weights(|start| start.coordinates);
-        let at = |k: usize| q[k];
-        self.conditions(weights, fixed, at, |row, error| {
+        self.conditions(&weights, &away, fixed, from_fixed, |row, error| {
             row.constraint.position_error(self.now.time, &self.now.poses, error);
         })
     }
 
-    /// Conditions as placed, with the value of each row from `error` and that of each coordinate
-    /// from `at`.
+    /// Conditions as placed: how far each unknown is `away` from where it would be left, the value
+    /// of each fixed coordinate and of each row.
     fn conditions(
         &self,
-        weights: Vec<S>,
-        fixed: &[Fixed<S>],
-        at: impl Fn(usize) -> S,
+        weights: &[S],
+        away: &[S],
+        fixed_rows: &[Fixed<S>],
+        from_fixed: impl Fn(&Fixed<S>) -> S,
         error: impl Fn(&Row<S>, &mut [S]),
     ) -> Conditions<S> {
-        let n = self.layout.coordinates;
+        let scales = self.column_scales();
+        let single = |at: usize, coefficient: S, error: S| {
+            let mut coefficients = vec![S::zero(); scales.len()];
+            coefficients[at] = coefficient;
+            (coefficients, error)
+        };
         let written = |rows: &[Row<S>]| {
             let mut out = Vec::new();
             for row in rows {
                 let mut errors = [S::zero(); 2];
                 error(row, &mut errors);
+                let size = match row.constraint {
+                    Constraint::Revolute(_) => S::one(),
+                    Constraint::Drive(_) => S::from_f64(self.length),
+                };
                 for (r, error) in errors.iter().enumerate().take(row.constraint.rows()) {
-                    out.push((self.coefficients(&row.constraint, r), *error));
+                    let coefficients = self.coefficients(&row.constraint, r);
+                    let scaled = coefficients.iter().zip(&scales).map(|(c, s)| *c * *s * size);
+                    out.push((scaled.collect(), *error * size));
                 }
             }
             out
         };
-        let mut exact = written(&self.layout.constraints);
-        exact.extend(fixed.iter().map(|fixed| {
-            let mut coefficients = vec![S::zero(); n];
-            coefficients[fixed.at] = S::one();
-            (coefficients, at(fixed.at) - fixed.value)
-        }));
-        Conditions { exact, wished: written(&self.centring()), weights }
+        let fixed =
+            |fixed: &Fixed<S>| single(fixed.at, S::one(), from_fixed(fixed) / scales[fixed.at]);
+        let near = |k: usize| single(k, weights[k], weights[k] * away[k] / scales[k]);
+        Conditions {
+            joints: written(&self.layout.constraints),
+            fixed: fixed_rows.iter().map(fixed).collect(),
+            wished: written(&self.centring()),
+            near: (0..scales.len()).map(near).collect(),
+            bend: None,
+        }
+    }
+
+    /// Second derivatives of ½|C|² under the exact conditions, as placed: only those by an angle
+    /// twice are not zero.
+    fn bend(&self, conditions: &Conditions<S>) -> Vec<S> {
+        let n = self.layout.coordinates;
+        let slope = |k: usize| {
+            let wished = conditions.wished.iter();
+            wished.fold(S::zero(), |sum, (row, error)| sum + row[k] * *error)
+        };
+        // what the exact conditions hold against the slope: |Hᵀ μ + Cᵀ C| is least
+        let exact = || conditions.joints.iter().chain(&conditions.fixed);
+        let across: Vec<linear::Row<S>> =
+            (0..n).map(|k| (exact().map(|(row, _)| row[k]).collect(), slope(k))).collect();
+        let mut multipliers = Cascade::new(exact().count());
+        multipliers.minimise(&across, None, blind::<S>(n));
+        let scales = self.column_scales();
+        let mut bend = vec![S::zero(); n];
+        let mut add = |constraint: &Constraint<S>, lambda: &[S]| {
+            let by_angle = constraint.d_wrenches(&self.now.poses, lambda);
+            for (body, by_angle) in constraint.bodies().into_iter().zip(by_angle) {
+                if let Role::Free(at) = self.layout.roles[body] {
+                    bend[at + 2] += by_angle * scales[at + 2] * scales[at + 2];
+                }
+            }
+        };
+        for row in &self.layout.constraints {
+            let rows = row.first..row.first + row.constraint.rows();
+            add(&row.constraint, &multipliers.x()[rows]);
+        }
+        for (row, errors) in self.centring().iter().zip(conditions.wished.chunks(2)) {
+            let errors: Vec<S> = errors.iter().map(|(_, error)| *error).collect();
+            add(&row.constraint, &errors);
+        }
+        bend
     }
 
     /// One row of Φ_q over all coordinates.
@@ -234,7 +429,7 @@ impl<S: Scalar> Mechanism<S> {
         let mut coefficients = vec![S::zero(); self.layout.coordinates];
         let blocks = constraint.jacobian(row, &constraint.arms(&self.now.poses));
         for (body, block) in constraint.bodies().into_iter().zip(blocks) {
-            if let Some((_, at)) = self.free_bodies().find(|(free, _)| *free == body) {
+            if let Role::Free(at) = self.layout.roles[body] {
                 for (c, entry) in block.into_iter().enumerate() {
                     coefficients[at + c] += entry;
                 }
@@ -320,7 +515,7 @@ impl<S: Scalar> Mechanism<S> {
             .collect()
     }
 
-    fn assemble_velocities(&mut self, q: &[S]) -> Result<Vec<S>, Vec<Complaint>> {
+    fn assemble_velocities(&mut self, q: &[S]) -> Result<(Vec<S>, Solved), Vec<Complaint>> {
         self.factor().map_err(|singular| {
             vec![Complaint {
                 key: self.layout.key(&self.model, singular.row),
@@ -330,29 +525,45 @@ impl<S: Scalar> Mechanism<S> {
             }]
         })?;
         let fixed = self.fixed(|start| start.velocities);
-        let mut v = self.named(|start| start.velocities);
-        // the problem is linear; repeating it removes what SLACK and rounding leave
-        for step in 0..2 * LAST_STEPS {
-            self.place(&State { time: S::zero(), q, v: &v, carried: None });
-            let weights = self.weights(|start| start.velocities);
-            let mut conditions = self.conditions(
-                weights,
-                &fixed,
-                |k| v[k],
-                |row, error| {
-                    row.constraint.velocity_error(&self.now.poses, &self.now.motions, error);
-                },
-            );
-            if step >= LAST_STEPS {
-                conditions.wished.clear();
+        let named = self.named(|start| start.velocities);
+        let scales = self.column_scales();
+        let mut v = named.clone();
+        let mut solved = Solved { left: f64::INFINITY, condition: 1.0, at_rest: false };
+        // the problem is linear; a second pass removes what rounding leaves
+        for pass in 0..MOST_PASSES {
+            let conditions = self.velocity_conditions(q, &v, &named, &fixed);
+            let Some(change) = conditions.change(false) else { break };
+            for (k, v) in v.iter_mut().enumerate() {
+                *v += change.x[k] * scales[k];
             }
-            let Some(change) = conditions.change() else { break };
-            v.iter_mut().zip(change).for_each(|(v, change)| *v += change);
+            let left = change.size();
+            let no_gain = pass >= FOLLOWING && !(left < 0.5 * solved.left);
+            solved = Solved { left, condition: change.condition, at_rest: true };
+            if no_gain || (left == 0.0 && pass >= FOLLOWING) {
+                break;
+            }
         }
+        self.hold(&mut v, &fixed);
         let fastest = v.iter().fold(1.0, |fastest: f64, v| fastest.max(v.abs().to_f64()));
         let keys = ["velocity_x", "velocity_y", "angular_velocity"];
         let complaints = self.unmet(&v, 1e-9 * fastest, |start| start.velocities, keys);
-        if complaints.is_empty() { Ok(v) } else { Err(complaints) }
+        if complaints.is_empty() { Ok((v, solved)) } else { Err(complaints) }
+    }
+
+    fn velocity_conditions(
+        &mut self,
+        q: &[S],
+        v: &[S],
+        named: &[S],
+        fixed: &[Fixed<S>],
+    ) -> Conditions<S> {
+        self.place(&State { time: S::zero(), q, v, carried: None });
+        let away: Vec<S> = v.iter().zip(named).map(|(v, named)| *v - *named).collect();
+        let weights = self.weights(|start| start.velocities);
+        let from_fixed = |fixed: &Fixed<S>| v[fixed.at] - fixed.value;
+        self.conditions(&weights, &away, fixed, from_fixed, |row, error| {
+            row.constraint.velocity_error(&self.now.poses, &self.now.motions, error);
+        })
     }
 
     /// Typical sizes from the start: angles 1 rad; lengths the largest arm; rates the largest of
@@ -376,41 +587,70 @@ impl<S: Scalar> Mechanism<S> {
 impl<S: Scalar> Conditions<S> {
     /// Sum of squares of what is not met; exact conditions weigh more.
     fn error(&self) -> S {
-        let squares = |rows: &[(Vec<S>, S)]| {
+        let squares = |rows: &[linear::Row<S>]| {
             rows.iter().fold(S::zero(), |sum, (_, error)| sum + *error * *error)
         };
-        squares(&self.exact) * S::from_f64(1e3) + squares(&self.wished)
+        (squares(&self.joints) + squares(&self.fixed)) * S::from_f64(1e3) + squares(&self.wished)
     }
 
-    /// The step of the module's header; `None` if it cannot be computed.
-    fn change(&self) -> Option<Vec<S>> {
-        let (n, m) = (self.weights.len(), self.exact.len());
-        let size = n + m;
-        let mut matrix = vec![S::zero(); size * size];
-        let mut right = vec![S::zero(); size];
-        for (row, error) in &self.wished {
-            for a in 0..n {
-                right[a] -= row[a] * *error;
-                for b in 0..n {
-                    matrix[a * size + b] += row[a] * row[b];
-                }
-            }
+    /// The change of the module's header; where centring is weighed against staying, the last two
+    /// ranks are one. `None` if it cannot be computed.
+    fn change(&self, weighed: bool) -> Option<Change<S>> {
+        let first = self.solution(weighed)?;
+        if self.bend.is_some() {
+            return Some(first);
         }
-        for (k, weight) in self.weights.iter().enumerate() {
-            matrix[k * size + k] += *weight;
-        }
-        for (r, (row, error)) in self.exact.iter().enumerate() {
-            for (k, entry) in row.iter().enumerate() {
-                matrix[k * size + n + r] = *entry;
-                matrix[(n + r) * size + k] = *entry;
-            }
-            matrix[(n + r) * size + n + r] = -S::from_f64(SLACK);
-            right[n + r] = -*error;
-        }
-        linear::solve_general(&mut matrix, size, &mut right).ok()?;
-        right.truncate(n);
-        right.iter().all(|x| x.is_finite()).then_some(right)
+        // what rounding has left of it is such a problem too
+        let after = |rows: &[linear::Row<S>]| {
+            let error = |(row, error): &linear::Row<S>| {
+                let products = row.iter().zip(&first.x);
+                products.fold(*error, |sum, (a, x)| sum + *a * *x)
+            };
+            rows.iter().map(|row| (row.0.clone(), error(row))).collect()
+        };
+        let second = Conditions {
+            joints: after(&self.joints),
+            fixed: after(&self.fixed),
+            wished: after(&self.wished),
+            near: after(&self.near),
+            bend: None,
+        };
+        let second = second.solution(weighed)?;
+        let x = first.x.iter().zip(&second.x).map(|(x, more)| *x + *more).collect();
+        Some(Change { x, condition: first.condition })
     }
+
+    fn solution(&self, weighed: bool) -> Option<Change<S>> {
+        let n = self.near.len();
+        let blind = blind::<S>(n);
+        let mut cascade = Cascade::new(n);
+        let mut condition = cascade.minimise(&self.joints, None, blind);
+        condition *= cascade.minimise(&self.fixed, None, blind);
+        match weighed {
+            true => {
+                let both: Vec<_> = self.wished.iter().chain(&self.near).cloned().collect();
+                cascade.minimise(&both, None, 0.0);
+            }
+            false => {
+                condition *= cascade.minimise(&self.wished, self.bend.as_deref(), blind);
+                cascade.minimise(&self.near, None, 0.0);
+            }
+        }
+        let x = cascade.x().to_vec();
+        x.iter().all(|x| x.is_finite()).then_some(Change { x, condition })
+    }
+}
+
+impl<S: Scalar> Change<S> {
+    /// The largest change of an unknown (m).
+    fn size(&self) -> f64 {
+        self.x.iter().fold(0.0, |most, x| most.max(x.abs().to_f64()))
+    }
+}
+
+/// What counts as not seen by a condition of n unknowns, over its coefficients.
+fn blind<S: Scalar>(n: usize) -> f64 {
+    BLIND * n as f64 * S::EPSILON
 }
 
 fn start_fault(fault: Fault) -> Vec<Complaint> {

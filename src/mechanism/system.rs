@@ -2,7 +2,8 @@
 
 use super::Mechanism;
 use super::layout::Role;
-use crate::clearance::{Bodies, Mode};
+use crate::clearance::{Bodies, Gap};
+use crate::contact::Penetration;
 use crate::dae::{Course, Fault, State, System, Watch};
 use crate::linear::Singular;
 use crate::plane::Vector;
@@ -149,12 +150,8 @@ impl<S: Scalar> System<S> for Mechanism<S> {
 
     fn offsets_at(&mut self, state: State<'_, S>, offsets: &mut [Vector<S>]) {
         self.place(&state);
-        // a difference that is nothing but rounding is that of a centred journal
-        let rounding = 4.0 * S::EPSILON * self.length;
-        for ((k, clearance), offset) in self.model.clearances().iter().enumerate().zip(offsets) {
-            let gap = self.now.gap(k, clearance);
-            let centred = gap.eccentricity.to_f64() <= rounding && !S::CARRIES_DERIVATIVE;
-            *offset = if centred { Vector::zero() } else { gap.offset };
+        for (k, offset) in offsets.iter_mut().enumerate() {
+            *offset = self.offset(k);
         }
     }
 
@@ -205,6 +202,25 @@ impl<S: Scalar> Mechanism<S> {
         })
     }
 
+    /// Square of the angular frequency (1/s²) that contact `clearance` swings with at most where it
+    /// is this deep (m): ∂F_N/∂δ (1/m + r²/I), summed over both bodies as if nothing else held them.
+    pub fn swing_squared(&self, clearance: usize, depth: f64) -> f64 {
+        let law = &self.model.clearances()[clearance];
+        let pressed = Penetration {
+            depth: S::from_f64(depth),
+            rate: S::zero(),
+            inverse_impact_rate: S::zero(),
+        };
+        let slope = law.normal.force(pressed).d_depth.to_f64();
+        let pair = &law.pair;
+        let mobility = [(pair.i, pair.s_i), (pair.j, pair.s_j)].map(|(body, arm)| {
+            let Role::Free(at) = self.layout.roles[body] else { return 0.0 };
+            let [translation, rotation] = [at, at + 2].map(|i| self.inverse_masses[i].to_f64());
+            translation + arm.dot(arm).to_f64() * rotation
+        });
+        slope * (mobility[0] + mobility[1])
+    }
+
     /// Penetration rate and slip velocity (m/s) of a clearance at the state last evaluated; zero
     /// where the centres coincide.
     pub fn gap_rates(&self, clearance: usize) -> (S, S) {
@@ -217,63 +233,27 @@ impl<S: Scalar> Mechanism<S> {
         (rates.rate, rates.slip)
     }
 
+    /// Offset of a journal (m), as placed. A difference that is nothing but rounding is that of a
+    /// centred journal.
+    pub(super) fn offset(&self, clearance: usize) -> Vector<S> {
+        let gap = self.now.gap(clearance, &self.model.clearances()[clearance]);
+        let rounding = 2.0 * S::EPSILON * self.gap_size(clearance, &gap);
+        let centred = gap.eccentricity.to_f64() <= rounding && !S::CARRIES_DERIVATIVE;
+        if centred { Vector::zero() } else { gap.offset }
+    }
+
+    /// Sum of the lengths that an offset is a difference of (m).
+    pub(super) fn gap_size(&self, clearance: usize, gap: &Gap<S>) -> f64 {
+        let pair = &self.model.clearances()[clearance].pair;
+        let [at_i, at_j] = [pair.i, pair.j].map(|body| self.now.poses[body].position);
+        [at_i, at_j, gap.arm_i, gap.arm_j].into_iter().fold(0.0, |sum, x| sum + x.norm().to_f64())
+    }
+
     /// The bodies without unknowns.
     pub(super) fn free_bodies(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
         self.layout.roles.iter().enumerate().filter_map(|(body, role)| match role {
             Role::Free(at) => Some((body, *at)),
             _ => None,
         })
-    }
-
-    /// Begins contacts at the start: where δ > 0; where δ = 0 and δ̇ > 0; and where both are zero
-    /// and the forces at the start press journal and bearing together, δ̈ > 0.
-    pub(super) fn choose_start_modes(&mut self, state: State<'_, S>) -> Result<(), Fault> {
-        let zero = S::zero();
-        let mut resting = Vec::new();
-        self.place(&state);
-        for k in 0..self.modes.len() {
-            let law = &self.model.clearances()[k];
-            let gap = self.now.gap(k, law);
-            let rates = law.rates(&gap, &self.now.motions);
-            if gap.depth > zero || (gap.depth == zero && rates.rate > zero) {
-                self.modes[k] = Mode::Contact(law.begin(rates.rate, rates.slip, zero));
-            } else if gap.depth == zero && rates.rate == zero {
-                resting.push(k);
-            }
-        }
-        if !resting.is_empty() {
-            self.evaluate(state)?;
-        }
-        for k in resting {
-            let (law, now) = (&self.model.clearances()[k], &self.now);
-            let gap = now.gap(k, law);
-            let rates = law.rates(&gap, &now.motions);
-            let (second, _) = law.second_rates(&gap, &rates, &now.motions, &now.accelerations);
-            if second > zero {
-                self.modes[k] = Mode::Contact(law.begin(rates.rate, rates.slip, zero));
-            }
-        }
-        self.choose_slip_regions(state)?;
-        self.watch();
-        Ok(())
-    }
-
-    /// Chooses the regions of friction of the contacts at the start once more, now that the
-    /// accelerations with these contacts can be known.
-    fn choose_slip_regions(&mut self, state: State<'_, S>) -> Result<(), Fault> {
-        if self.model.clearances().iter().all(|law| law.friction.is_none()) {
-            return Ok(());
-        }
-        self.evaluate(state)?;
-        let now = &self.now;
-        for ((law, mode), touch) in
-            self.model.clearances().iter().zip(&mut self.modes).zip(&now.touches)
-        {
-            let (Mode::Contact(contact), Some(touch)) = (mode, touch) else { continue };
-            let (gap, rates) = (&touch.gap, &touch.rates);
-            let (_, acceleration) = law.second_rates(gap, rates, &now.motions, &now.accelerations);
-            *contact = law.begin(rates.rate, rates.slip, acceleration);
-        }
-        Ok(())
     }
 }

@@ -211,7 +211,7 @@ where
                 return Err(Error::Contradiction(Contradiction::TimeGoesBack { from, to }));
             }
             self.progress.steps += 1;
-            if S::EPSILON < f64::EPSILON && advance == Advance::Stepped {
+            if S::EPSILON < f64::EPSILON {
                 self.check_modes()?;
             }
             self.follow_contacts()?;
@@ -236,12 +236,15 @@ where
     fn check_modes(&mut self) -> Outcome<(), S, E, R> {
         let now = self.engine.now().clone();
         let time = now.time.to_f64();
+        let fired = self.engine.fired().to_vec();
         let system = self.engine.system();
         let state = State { time: now.time, q: &now.q, v: &now.v, carried: None };
         let mut values = vec![S::zero(); system.watches().len()];
         system.event_values(state, &mut values).map_err(|source| Error::System { time, source })?;
-        let beyond = values.iter().zip(system.watches()).position(|(value, watch)| {
+        let watched = values.iter().zip(system.watches()).zip(fired);
+        let beyond = watched.into_iter().position(|((value, watch), fired)| {
             let off = match watch.direction {
+                _ if fired => 0.0,
                 Direction::Off => 0.0,
                 Direction::Rising => value.to_f64(),
                 Direction::Falling => -value.to_f64(),

@@ -59,6 +59,30 @@ pub enum ExplicitError {
         /// Where.
         time: f64,
     },
+    /// Steps are so short that the end is out of reach.
+    #[error(
+        "the explicit engine takes steps of {step:.1e} s at t = {time:e} s, {steps:.0e} to the end: \
+         something in the case is stiff (a friction ramp v0 to v1 that is narrow, a contact that \
+         begins very softly); solver.engine = \"ida\" is made for that"
+    )]
+    Crawl {
+        /// Where (s).
+        time: f64,
+        /// Mean length of a step (s).
+        step: f64,
+        /// Steps that are left at that pace.
+        steps: f64,
+    },
+    /// No bound tells whether a step holds an event.
+    #[error(
+        "it cannot be proven that the step from t = {time:e} s holds no event of function {function}"
+    )]
+    Unproven {
+        /// Begin of the step (s).
+        time: f64,
+        /// Index of the event function.
+        function: usize,
+    },
     /// An event, or a time within a step, was not met by repeated steps.
     #[error("the explicit engine cannot land on {target} within the step from t = {time:e} s")]
     Landing {

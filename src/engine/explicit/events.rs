@@ -15,6 +15,8 @@ const TRUSTED_STEPS: usize = 12;
 const FIRST_ACCURACY: f64 = 1e-8;
 /// What the last correction of a landing may leave, in units of the tolerance.
 const LEFT: f64 = 0.1;
+/// The same for an event, at the most.
+const MET: f64 = 1e-12;
 /// Change of a landing's length, as a fraction of the step, from which on partial steps become
 /// more accurate.
 const CLOSE: f64 = 1e-2;
@@ -139,11 +141,16 @@ impl<S: Scalar, Y: System<S>> Explicit<S, Y> {
     }
 
     /// Whether a root falls, and will reach zero sooner than the time can tell. Two roots that
-    /// tend to zero together never do so in τ.
+    /// tend to zero together never do so in τ, and below the tolerance they may stay where they
+    /// are: what time is left then is of the square of the tolerance.
     fn is_as_good_as_there(&self, k: usize) -> bool {
         let Some(slot) = self.flow.slot(k) else { return false };
         let i = self.flow.root(slot);
         let (sigma, rate) = (self.here.y[i].to_f64(), self.here.rates[i].to_f64());
+        let others = self.flow.roots().len() > 1;
+        if others && rate < 0.0 && sigma <= self.options.tolerance * self.deepest[k] {
+            return true;
+        }
         let pace = self.flow.pace_at(&self.here.y).to_f64();
         let left = sigma * pace / f64::from(self.flow.roots()[slot].degree);
         rate < 0.0 && left <= -rate * self.time().abs() * S::EPSILON
@@ -215,16 +222,14 @@ impl<S: Scalar, Y: System<S>> Explicit<S, Y> {
     /// Marks the events at the place landed on: that one, and those which are zero with it.
     fn fire(&mut self, target: Target<S>) {
         for k in 0..self.fired.len() {
-            if !self.is_watched(k) || self.standing[k] == Standing::Passed {
-                continue;
-            }
+            let passed = !self.is_watched(k) || self.standing[k] == Standing::Passed;
             let value = self.here.approaches[k].to_f64();
             let rate = self.here.approach_rates[k].to_f64();
             let near = match target {
                 Target::Event(_) => value >= -self.noise(rate),
                 Target::Time(_) => value > 0.0,
             };
-            if target == Target::Event(k) || (near && rate > 0.0) {
+            if target == Target::Event(k) || (!passed && near && rate > 0.0) {
                 self.fired[k] = true;
                 self.standing[k] = Standing::Passed;
             }
@@ -265,11 +270,18 @@ impl<S: Scalar, Y: System<S>> Explicit<S, Y> {
     /// and what was seen there.
     fn first_rise(&mut self, k: usize) -> Result<Option<[(S, Look); 2]>, ExplicitError> {
         let (mut begin, end) = (self.look_at_begin(k), self.look_at_end(k));
+        if matches!(self.flow.gauges()[k], Gauge::Root { .. }) && self.flow.roots().len() > 1 {
+            // roots that tend to zero together decay as e^(−τ): no polynomial bounds that, and
+            // beyond zero time goes back
+            let risen = end.course.value >= 0.0 && self.standing[k] != Standing::Passed;
+            return Ok(risen.then_some([(S::zero(), begin), (self.length, end)]));
+        }
         self.places.clear();
         self.places.extend([(begin.at, S::zero()), (end.at, self.length)]);
+        let above = begin.course.value > begin.course.noise;
         match self.standing[k] {
-            // above zero: first it has to fall
-            Standing::Passed => {
+            // above zero, or left there by a projection: first it has to fall
+            Standing::Passed | Standing::Leaving if above => {
                 let reversed = |look: Look| Look { course: look.course.reversed(), ..look };
                 let found = first_rise(reversed(begin), reversed(end), |at| {
                     self.look(k, at).map(reversed)
@@ -277,11 +289,14 @@ impl<S: Scalar, Y: System<S>> Explicit<S, Y> {
                 let Found::Rise(_, fallen) = found else { return Ok(None) };
                 begin = reversed(fallen);
             }
-            Standing::Leaving => begin.course.value = begin.course.value.min(0.0),
-            Standing::Below | Standing::Due => {}
+            _ => begin.course.value = begin.course.value.min(0.0),
         }
         match first_rise(begin, end, |at| self.look(k, at))? {
             Found::Nothing => Ok(None),
+            // what is to be called true is to be proven
+            Found::Unproven if S::EPSILON < f64::EPSILON => {
+                Err(ExplicitError::Unproven { time: self.step_begin(), function: k })
+            }
             Found::Unproven => {
                 self.tally.unproven += 1;
                 Ok(None)
@@ -348,10 +363,22 @@ impl<S: Scalar, Y: System<S>> Explicit<S, Y> {
     fn approach_at_probe(&mut self, k: usize) -> Result<(S, S), ExplicitError> {
         let time = self.step_begin();
         let fault = |source| ExplicitError::System { time, source };
+        self.evaluate_probe().map_err(fault)?;
+        let rate = self.flow.approach_rate(k);
         let probe = &mut self.probe;
         self.flow.approaches(&probe.y, &mut probe.approaches).map_err(fault)?;
-        self.flow.evaluate(&probe.y).map_err(fault)?;
-        Ok((probe.approaches[k], self.flow.approach_rate(k)))
+        Ok((probe.approaches[k], rate))
+    }
+
+    /// Evaluates the system where the last partial step led. Cosines and sines are those of the
+    /// angles, as whoever looks at the state will have them: those carried along are off by the
+    /// tolerance.
+    fn evaluate_probe(&mut self) -> Result<(), Fault> {
+        let probe = &mut self.probe;
+        self.flow.reset_turns(&mut probe.y);
+        let turns = self.flow.first_turn()..self.flow.first_offset();
+        probe.low[turns].fill(S::zero());
+        self.flow.evaluate(&probe.y)
     }
 
     /// What is left to the target where the last partial step led, and its rate; takes the rates
@@ -384,6 +411,12 @@ impl<S: Scalar, Y: System<S>> Explicit<S, Y> {
         // a method of one order takes no cheaper partial steps
         let adapts = matches!(self.stepper, Stepper::Extrapolation(_));
         let roughest = if adapts { FIRST_ACCURACY.max(tolerance) } else { tolerance };
+        // an event is met to the rounding of doubles however loose the tolerance: samples before it
+        // must not see it
+        let left = match target {
+            Target::Event(_) => LEFT * tolerance.min(MET),
+            Target::Time(_) => LEFT * tolerance,
+        };
         let [mut low, mut high] = bracket;
         let half = S::from_f64(0.5);
         let mut at = Iterate { place: guess.max(low).min(high), accuracy: roughest };
@@ -394,7 +427,7 @@ impl<S: Scalar, Y: System<S>> Explicit<S, Y> {
             let change = -(miss / rate);
             let aim = at.place + change;
             let size = change.to_f64().abs() / span;
-            let done = size * size * at.doubt(last, span) <= LEFT * tolerance;
+            let done = size * size * at.doubt(last, span) <= left;
             let inside = aim >= bracket[0] && aim <= bracket[1];
             if at.accuracy == tolerance && done && inside {
                 return Ok(self.correct(at.place, last, miss, rate));

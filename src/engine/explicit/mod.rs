@@ -48,6 +48,15 @@ use stepper::{Norm, Point, Stepper};
 /// Attempts at one step, and steps at one time, after which the engine gives up.
 const PATIENCE: u32 = 100;
 
+/// Up to this tolerance partial steps from either end of a step lead to the same places as far as
+/// anybody sees; beyond, all are taken from its begin.
+const TIGHT: f64 = 1e-10;
+
+/// Steps between two looks at how far the simulation has come, ...
+const STRETCH: u64 = 100_000;
+/// ... and steps to the end, at the pace of the last stretch, from which on it is hopeless.
+const HOPELESS: f64 = 3e9;
+
 /// Size of a root in units of its largest value. What a relative error of the root does to the
 /// velocities is a few times that, of the velocities in the contact, which are a part of the
 /// typical ones; measured, factors of one and ten leave the same errors, a hundred larger ones.
@@ -126,6 +135,8 @@ pub struct Explicit<S: Scalar, Y: System<S>> {
     /// Places of the last step that a search has looked at, by what they were seen at.
     places: Vec<(f64, S)>,
     idle: u32,
+    /// Time (s) at which the present stretch of steps began.
+    stretch_began: f64,
     now: Snapshot<S>,
     tally: Tally,
 }
@@ -140,7 +151,7 @@ impl<S: Scalar, Y: System<S>> Explicit<S, Y> {
         if !(options.initial_step > 0.0 && options.max_step > 0.0) {
             return Err(ExplicitError::StepLength);
         }
-        let flow = Flow::new(system);
+        let flow = Flow::new(system, options.tolerance <= TIGHT);
         let (capacity, functions) = (flow.capacity(), flow.gauges().len());
         let coarse = S::EPSILON >= f64::EPSILON;
         let stepper = match options.method {
@@ -172,6 +183,7 @@ impl<S: Scalar, Y: System<S>> Explicit<S, Y> {
             fired: vec![false; functions],
             places: Vec::new(),
             idle: 0,
+            stretch_began: 0.0,
             now,
             tally: Tally::default(),
             flow,
@@ -355,11 +367,21 @@ impl<S: Scalar, Y: System<S>> Explicit<S, Y> {
         self.length = S::zero();
     }
 
-    /// Guards against steps and events that go on at one time.
-    fn count_progress(&mut self, before: S) -> Result<(), ExplicitError> {
+    /// Guards against steps and events that go on at one time, and against steps so short that
+    /// the `end` is out of reach.
+    fn count_progress(&mut self, before: S, end: S) -> Result<(), ExplicitError> {
         self.idle = if self.now.time > before { 0 } else { self.idle + 1 };
         if self.idle > PATIENCE {
             return Err(ExplicitError::Stuck { time: self.time() });
+        }
+        if self.tally.steps.is_multiple_of(STRETCH) && self.idle == 0 {
+            let now = self.time();
+            let made = now - std::mem::replace(&mut self.stretch_began, now);
+            let step = made / STRETCH as f64;
+            let steps = (end.to_f64() - now) / step;
+            if steps > HOPELESS {
+                return Err(ExplicitError::Crawl { time: now, step, steps });
+            }
         }
         Ok(())
     }
@@ -420,7 +442,7 @@ impl<S: Scalar, Y: System<S>> Engine<S> for Explicit<S, Y> {
         if self.fire_standing() {
             self.stand();
             self.tally.events += 1;
-            self.count_progress(before)?;
+            self.count_progress(before, end)?;
             return Ok(Advance::Event);
         }
         if end <= before {
@@ -443,7 +465,7 @@ impl<S: Scalar, Y: System<S>> Engine<S> for Explicit<S, Y> {
         }
         self.take_snapshot();
         self.tally.steps += 1;
-        self.count_progress(before)?;
+        self.count_progress(before, end)?;
         self.tally.events += u64::from(advance == Advance::Event);
         self.settle();
         Ok(advance)
@@ -563,11 +585,13 @@ impl<S: Scalar, Y: System<S>> Explicit<S, Y> {
         watches.any(|watch| watch.direction != Direction::Off && watch.power <= 0.0)
     }
 
-    /// Partial step to `probe`, which is to lie this far into the step; from its nearer end.
+    /// Partial step to `probe`, which is to lie this far into the step; from its nearer end, or,
+    /// where the tolerance is loose, from its begin.
     fn partial(&mut self, place: S, tolerance: f64) -> Result<(), ExplicitError> {
         self.tally.partial += 1;
         self.evaluated_here = false;
-        let from_end = place + place > self.length && !self.may_be_rough_beyond();
+        let same = self.options.tolerance <= TIGHT;
+        let from_end = same && place + place > self.length && !self.may_be_rough_beyond();
         let (base, length) =
             if from_end { (&self.here, place - self.length) } else { (&self.from, place) };
         self.norm.tolerance = tolerance;
