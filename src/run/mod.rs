@@ -35,7 +35,7 @@ use witness::Witness;
 const DRIFT: f64 = 5e-12;
 /// Off by so many roundings of the largest coordinate is no drift: far from the origin no
 /// projection comes nearer.
-const DRIFT_ROUNDINGS: f64 = 16.0;
+const DRIFT_ROUNDINGS: f64 = 64.0;
 /// Steps between two looks at the drift.
 const DRIFT_EVERY: u64 = 50;
 /// By how much, in units of the tolerance, an event function of order one may be beyond its zero
@@ -298,9 +298,10 @@ where
         }
         self.scratch.clone_from(self.engine.now());
         let drift = self.project()?;
-        let largest = self.scratch.q.iter().fold(0.0, |q: f64, x| q.max(x.abs().to_f64()));
-        let rounding = DRIFT_ROUNDINGS * S::EPSILON * largest;
-        if drift > rounding.max(DRIFT * self.engine.system().length()) {
+        let (system, q) = (self.engine.system(), &self.scratch.q);
+        let sizes = q.iter().zip(system.scales().0).map(|(q, size)| q.abs().to_f64() / size);
+        let rounding = DRIFT_ROUNDINGS * S::EPSILON * sizes.fold(0.0, f64::max);
+        if drift > rounding.max(DRIFT) * system.length() {
             let state = self.scratch.clone();
             self.restart(&state)?;
             self.segment += 1;
