@@ -8,7 +8,9 @@ use crate::engine::guard::{Found, Look, first_rise};
 use crate::scalar::Scalar;
 
 /// Partial steps that a landing may take.
-const MOST_PARTIAL_STEPS: usize = 120;
+const MOST_PARTIAL_STEPS: usize = 600;
+/// How much more accurate a partial step is repeated whose miss tells no sign.
+const FINER: f64 = 1e-4;
 /// Partial steps of a landing after which its bracket is halved by every second one.
 const TRUSTED_STEPS: usize = 12;
 /// Tolerance of the first partial step of a landing.
@@ -94,8 +96,9 @@ impl<S: Scalar, Y: System<S>> Explicit<S, Y> {
         }
         let moment = self.length_of(self.options.initial_step);
         let direction = if rate.abs() * moment > self.noise(rate) { rate } else { self.bend(k)? };
+        // what moves it by less than rounding is no direction
         Ok(match direction {
-            _ if direction <= 0.0 => Standing::Leaving,
+            _ if direction * moment <= self.noise(0.0) => Standing::Leaving,
             _ if fired => Standing::Passed,
             _ => Standing::Due,
         })
@@ -279,9 +282,9 @@ impl<S: Scalar, Y: System<S>> Explicit<S, Y> {
         self.places.clear();
         self.places.extend([(begin.at, S::zero()), (end.at, self.length)]);
         let above = begin.course.value > begin.course.noise;
-        match self.standing[k] {
+        match (self.standing[k], above) {
             // above zero, or left there by a projection: first it has to fall
-            Standing::Passed | Standing::Leaving if above => {
+            (Standing::Passed, _) | (Standing::Leaving, true) => {
                 let reversed = |look: Look| Look { course: look.course.reversed(), ..look };
                 let found = first_rise(reversed(begin), reversed(end), |at| {
                     self.look(k, at).map(reversed)
@@ -432,40 +435,54 @@ impl<S: Scalar, Y: System<S>> Explicit<S, Y> {
             if at.accuracy == tolerance && done && inside {
                 return Ok(self.correct(at.place, last, miss, rate));
             }
-            if miss > S::zero() {
+            // the sign of what is missed may be that of the partial step's error
+            let doubt = DOUBT * at.accuracy * self.grain(target);
+            let reliable = at.accuracy == tolerance || miss.to_f64().abs() > doubt;
+            if reliable && miss > S::zero() {
                 high = high.min(at.place.max(low))
-            } else {
+            } else if reliable {
                 low = low.max(at.place.min(high))
             }
             if at.accuracy == tolerance && (high - low).to_f64() <= 4.0 * S::EPSILON * span {
                 // the bracket is the zero, to rounding
                 return Ok(at.place);
             }
-            // close to the zero the sign of what is missed may be that of the partial step's error
-            let close = size < CLOSE && rate > S::zero();
-            let expected = (size * size).max(10.0 * at.accuracy);
-            let finish = expected * expected * (size + at.accuracy / size) < LEFT * tolerance;
-            let accuracy = match close {
-                true if finish => tolerance,
-                true => 1e-3 * expected * expected,
-                false => at.accuracy,
-            };
-            let accuracy = if count > TRUSTED_STEPS { tolerance } else { accuracy };
-            let newton =
-                if close && count <= TRUSTED_STEPS { inside } else { aim > low && aim < high };
+            let aimed = aim >= low && aim <= high && rate > S::zero();
             let halves = count > TRUSTED_STEPS && count.is_multiple_of(2);
-            let place = if newton && !halves { aim } else { (low + high) * half };
-            if close && newton {
+            if aimed && !halves {
+                let expected = (size * size).max(10.0 * at.accuracy);
+                let finish = expected * expected * (size + at.accuracy / size) < LEFT * tolerance;
+                let accuracy = match size < CLOSE {
+                    true if finish => tolerance,
+                    true => 1e-3 * expected * expected,
+                    false => at.accuracy,
+                };
                 self.remember(rate);
                 last = Some(at);
+                at = Iterate { place: aim, accuracy };
+            } else if reliable {
+                at.place = (low + high) * half;
+            } else {
+                at.accuracy *= FINER;
             }
-            at = Iterate { place, accuracy: accuracy.clamp(tolerance, roughest) };
+            if count > TRUSTED_STEPS {
+                at.accuracy = tolerance;
+            }
+            at.accuracy = at.accuracy.clamp(tolerance, roughest);
         }
         let target = match target {
             Target::Event(k) => format!("the event of function {k}"),
             Target::Time(time) => format!("t = {:e} s", time.to_f64()),
         };
         Err(ExplicitError::Landing { time: self.step_begin(), target })
+    }
+
+    /// What a relative error of the state in `probe` makes of what is missed of a target.
+    fn grain(&self, target: Target<S>) -> f64 {
+        match target {
+            Target::Event(k) => self.flow.course(&self.probe.y, k).grain,
+            Target::Time(_) => self.sizes[self.flow.time()],
+        }
     }
 
     /// Keeps the rates of an iterate, for the bend of the last one.
