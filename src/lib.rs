@@ -15,6 +15,7 @@ pub mod model;
 pub mod mechanism;
 pub mod engine;
 pub mod run;
+pub mod digits;
 pub mod record;
 pub mod case;
 pub mod simulate;

@@ -2,11 +2,13 @@
 //! which no claim may exceed; and that whatever is certified must be what IDA finds as far as its
 //! digits go, and what a third run in 71 digits finds, far tighter and with other steps.
 
+mod compared;
 mod simulated;
 
+use compared::{Outcome, Trial};
 use freeplay::case::Case;
-use freeplay::certify::{self, Certificate, Reference};
-use freeplay::run::{Event, EventKind, Progress};
+use freeplay::certify::{self, Certificate, Reference, Told};
+use freeplay::run::{Event, EventKind, Peak, Progress};
 use freeplay::simulate::Simulation;
 use simulated::truth::{Table, digits, scaled, scaled_truth};
 use simulated::{case, told};
@@ -95,7 +97,7 @@ fn assert_confirmed(path: &str, duration: &str, set: &[&str]) {
     };
     assert_eq!(kinds(&trajectory.events), kinds(&finer.events), "{set:?}");
     let parting = certificate.parting;
-    assert!(parting.is_none(), "{set:?}: {}", parting.map_or(0.0, |parting| parting.time()));
+    assert!(parting.is_none(), "{set:?}: {}", parting.map_or(0.0, |parting| parting.event.time));
     assert!(!trajectory.events.is_empty(), "{set:?}: nothing happens");
 }
 
@@ -154,14 +156,18 @@ fn a_reference_that_ends_early_is_never_said_to_hold_to_the_end() {
     let whole = certified(&case, reference(&case));
     let simulation = told(Simulation::new(&case));
     let names = simulation.mechanism().model().names();
+    let told = Told { case: "a", case_sha256: "0", names, digits: 10.0, revolution: None };
     assert!(whole.reference_holds_to_the_end(10.0));
-    assert!(whole.words(names, 10.0, None).contains("to the end, 0.800 ms"));
+    assert!(whole.words(&told).contains("to the end, 0.800 ms"));
     let mut early = whole.clone();
     early.reference.complete = false;
     early.reference.stopped = Some("the reference run stopped".into());
     assert!(!early.reference_holds_to_the_end(10.0));
-    let words = early.words(names, 10.0, None);
-    assert!(words.contains("until 0.800 ms; cannot certify beyond"), "{words}");
+    let words = early.words(&told);
+    assert!(
+        words.contains("until 0.800 ms, of 0.800 ms asked for; cannot certify beyond"),
+        "{words}"
+    );
     assert!(words.contains("the reference run stopped"), "{words}");
 }
 
@@ -198,4 +204,202 @@ fn a_coarser_run_has_fewer_digits() {
     };
     let (fine, coarse) = (digits(&fine), digits(&coarse));
     assert!(fine > coarse + 2.0, "{fine:.1} and {coarse:.1} digits");
+}
+
+/// A certified reference of case a until 1.2 ms, with a sample every 0.1 ms: one contact begins in it
+/// at 0.48 ms, and 9 events come until 2.1 ms.
+fn certified_reference(trial: &Trial) -> Vec<String> {
+    let file = trial.path("reference.h5").display().to_string();
+    let interval = ["--set", "run.sample_interval=1e-4"];
+    let made =
+        trial.certify("four-bar-a", &[&["--until", "0.0012", "-o", &file], &interval[..]].concat());
+    assert_eq!(made.code, 0, "{}", made.err);
+    vec!["--reference".to_owned(), file]
+}
+
+fn against(trial: &Trial, reference: &[String], more: &[&str]) -> Outcome {
+    let reference: Vec<&str> = reference.iter().map(String::as_str).collect();
+    trial.certify("four-bar-a", &[&reference[..], more].concat())
+}
+
+#[test]
+fn a_stored_reference_is_held_to_the_end_that_is_asked_for() {
+    let trial = Trial::new();
+    let reference = certified_reference(&trial);
+    let whole = against(&trial, &reference, &["--until", "0.0012", "--digits", "10"]);
+    assert_eq!(whole.code, 0, "{}", whole.err);
+    assert!(whole.out.contains("digits of the state to the end, 1.200 ms"), "{}", whole.out);
+    let longer = against(&trial, &reference, &["--until", "0.0018", "--digits", "10"]);
+    assert_eq!(longer.code, 1, "{}", longer.out);
+    assert!(longer.out.contains("until 1.200 ms, of 1.800 ms asked for"), "{}", longer.out);
+    assert!(longer.err.contains("until 0.0018 s, only until 0.0012 s"), "{}", longer.err);
+    let shorter = against(&trial, &reference, &["--until", "0.0006", "--digits", "10"]);
+    assert_eq!(shorter.code, 0, "{}", shorter.err);
+    assert!(shorter.out.contains("to the end, 0.600 ms"), "{}", shorter.out);
+    assert!(shorter.out.contains("the run has 1 of 1"), "{}", shorter.out);
+    assert!(shorter.out.contains("parting      none"), "{}", shorter.out);
+    let nothing = against(&trial, &reference, &["--until", "0.00035", "--json"]);
+    let json: serde_json::Value = serde_json::from_str(&nothing.out).unwrap();
+    assert_eq!(json["events"]["of"], 0);
+    assert_eq!(json["times"].as_array().unwrap().len(), 4);
+    assert!(json["sentence"].as_str().unwrap().contains(json["case_sha256"].as_str().unwrap()));
+}
+
+#[test]
+fn a_run_with_other_sample_times_is_held_against_a_reference_at_its_own() {
+    let trial = Trial::new();
+    let reference = certified_reference(&trial);
+    let json = |set: &[&str]| -> serde_json::Value {
+        let arguments = [&["--until", "0.0012", "--json"], set].concat();
+        let outcome = against(&trial, &reference, &arguments);
+        serde_json::from_str(&outcome.out).unwrap_or_else(|_| panic!("{}", outcome.err))
+    };
+    let same = json(&["--set", "run.sample_interval=1e-4"]);
+    let other = json(&["--set", "run.sample_interval=3e-5"]);
+    assert_eq!(same["run_digits"], other["run_digits"]);
+    assert_eq!(other["run_holds"][1]["until"], 0.0012);
+}
+
+#[test]
+fn a_stored_reference_serves_the_same_numbers_however_they_are_written_and_no_others() {
+    let trial = Trial::new();
+    let reference = certified_reference(&trial);
+    let speed = |speed: &str| {
+        let set = format!("drives.crank.speed_rpm={speed}");
+        against(&trial, &reference, &["--until", "0.0012", "--digits", "10", "--set", &set])
+    };
+    for same in ["5e3", "5_000", "5000.0"] {
+        assert_eq!(speed(same).code, 0, "{}", speed(same).err);
+    }
+    let other = speed("5000.00000000000000001");
+    assert_eq!(other.code, 2);
+    assert!(other.err.contains("[drives] differs"), "{}", other.err);
+}
+
+#[test]
+fn a_stored_reference_that_was_changed_or_is_not_sealed_is_refused() {
+    let trial = Trial::new();
+    let reference = certified_reference(&trial);
+    let file = trial.path("reference.h5");
+    let refused = |word: &str| {
+        let outcome = against(&trial, &reference, &["--until", "0.0012"]);
+        assert_eq!(outcome.code, 2, "{}", outcome.out);
+        assert!(outcome.err.contains(word), "{}", outcome.err);
+    };
+    for (dataset, row) in [("velocity_x", 7), ("event_time", 0), ("reference_digits", 3)] {
+        let mut old = 0.0;
+        compared::change(&file, dataset, |values| old = std::mem::replace(&mut values[row], 1.5));
+        refused("was changed after it was certified");
+        compared::change(&file, dataset, |values| values[row] = old);
+    }
+    assert_eq!(against(&trial, &reference, &["--until", "0.0012"]).code, 0);
+    compared::add_attribute(&file, "scale_position", 1.0);
+    refused("was changed after it was certified");
+    compared::remove_attribute(&file, "certificate_sha256");
+    refused("is not sealed");
+}
+
+#[test]
+fn scales_of_what_is_zero_are_no_rounding() {
+    let case = case("cases/four-bar-a.toml", &["run.duration=0.0004", "run.sample_interval=1e-4"]);
+    let certificate = certified(&case, reference(&case));
+    let scales = &certificate.reference.scales;
+    // in flight there is no torque but that of rounding; 0.42 kg, 0.09 m, 523.6/s
+    assert!(scales.torque > 0.1 && scales.torque < 10.0, "{}", scales.torque);
+    for claim in &certificate.claims {
+        assert!(claim.run.torque > 10.0 && claim.run.forces > 8.0, "{claim:?}");
+    }
+}
+
+#[test]
+fn doubles_follow_a_pendulum_that_hangs_at_rest() {
+    let set = [
+        "start.rod={ angle = -1.5707963267948966, angular_velocity = 0.0, fixed = true }",
+        "run.duration=0.5",
+        "run.sample_interval=0.05",
+    ];
+    let case = case("cases/pendulum.toml", &set);
+    let certificate = certified(&case, reference(&case));
+    assert_eq!(certificate.reference.growth.double_precision_ends, None);
+    for claim in &certificate.claims {
+        assert!(claim.run.state > 10.0, "{claim:?}");
+    }
+}
+
+/// Largest relative difference of forces of peaks that two runs have, one to one.
+fn assert_same_peaks(run: &[Peak], other: &[Peak], relative: f64) {
+    assert_eq!(run.len(), other.len());
+    for (a, b) in run.iter().zip(other) {
+        assert_eq!(a.clearance, b.clearance);
+        assert!((a.force / b.force - 1.0).abs() < relative, "{a:?} and {b:?}");
+        assert!((a.time - b.time).abs() < 1e-9, "{a:?} and {b:?}");
+    }
+}
+
+/// Steps in many digits are longer than contacts swing: each has several maxima.
+#[test]
+fn a_reference_has_every_peak_that_a_run_with_short_steps_has() {
+    let set = |more: &[&'static str]| {
+        [&["run.duration=0.0078", "run.sample_interval=1e-3"], more].concat()
+    };
+    let short = ["solver.relative_tolerance=1e-13", "solver.max_step=1e-6"];
+    let ida = simulated::simulate(&case("cases/four-bar-a.toml", &set(&short)));
+    let digits =
+        ["solver.engine=explicit", "solver.precision=71", "solver.reference_tolerance=1e-29"];
+    let long = simulated::simulate(&case("cases/four-bar-a.toml", &set(&digits)));
+    assert_same_peaks(&long.peaks, &ida.peaks, 1e-6);
+    let missed = long.peaks.iter().find(|peak| (peak.time - 7.519489024e-3).abs() < 1e-11);
+    assert!((missed.unwrap().force - 841.287).abs() < 1e-3, "{missed:?}");
+}
+
+/// At a loose tolerance a contact is a single step; nothing is known of its force but inside.
+#[test]
+fn a_contact_of_one_step_has_its_largest_force() {
+    let set = [
+        "run.duration=0.0263",
+        "run.sample_interval=1e-6",
+        "solver.engine=explicit",
+        "solver.relative_tolerance=1e-4",
+    ];
+    let run = simulated::simulate(&case("cases/four-bar-a.toml", &set));
+    assert!(run.contacts.len() > 10);
+    for contact in &run.contacts {
+        let within = |time: f64| time >= contact.begin && !(time > contact.end);
+        let seen = run.samples.iter().filter(|sample| within(sample.time));
+        let seen = seen.map(|s| s.clearances[contact.clearance].normal_force).fold(0.0, f64::max);
+        assert!(contact.peak_force >= seen * (1.0 - 1e-3), "{contact:?}: a sample has {seen} N");
+    }
+}
+
+#[test]
+fn an_open_contact_has_its_largest_force_so_far() {
+    // the first contact of case a begins at 0.4798 ms
+    let run = simulated::simulate(&case(
+        "cases/four-bar-a.toml",
+        &["run.duration=0.000495", "run.sample_interval=5e-6"],
+    ));
+    let [contact] = &run.contacts[..] else { panic!("{:?}", run.contacts) };
+    let force = run.last().clearances[0].normal_force;
+    assert!(contact.end.is_nan() && force > 100.0);
+    assert!(contact.peak_force >= force * (1.0 - 1e-9), "{contact:?} and {force} N at the end");
+}
+
+#[test]
+fn the_other_engine_confirms_the_contacts_of_the_paper() {
+    for name in ["four-bar-a", "four-bar-b", "four-bar-c", "four-bar-a-friction"] {
+        let case = case(&format!("cases/{name}.toml"), &["run.duration=0.006"]);
+        let check =
+            told(certify::cross_check(&case, &mut |_: &Progress| ControlFlow::Continue(())));
+        assert_eq!((&check.disagreement, &check.stopped), (&None, &None), "{name}");
+        assert_eq!(check.until, 0.006, "{name}");
+        assert!(check.events > 5 && check.farthest < 1e-7, "{name}: {check:?}");
+    }
+}
+
+#[test]
+fn a_run_is_checked_by_the_other_engine_where_asked() {
+    let trial = Trial::new();
+    let checked = trial.checked("four-bar-c", &["run.duration=0.003"]);
+    assert_eq!(checked.code, 0, "{}", checked.err);
+    assert!(checked.out.contains("ida and explicit have the same"), "{}", checked.out);
 }

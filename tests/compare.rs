@@ -414,3 +414,100 @@ fn check_bad(outcome: &Outcome, word: &str) {
     );
     assert!(outcome.out.is_empty(), "{}", outcome.out);
 }
+
+/// A table of our own columns at some of the times of a result.
+fn table(result: &Path, columns: &[&str], keep: impl Fn(usize) -> bool) -> String {
+    let file = freeplay::record::ResultFile::open(result).unwrap();
+    let values: Vec<Vec<f64>> = columns.iter().map(|name| file.column(name).unwrap()).collect();
+    let mut text = format!("time,{}\n", columns.join(","));
+    for (row, time) in file.times().unwrap().iter().enumerate().filter(|(row, _)| keep(*row)) {
+        let cells = values.iter().map(|column| format!(",{:e}", column[row]));
+        text += &format!("{time:e}{}\n", cells.collect::<String>());
+    }
+    text
+}
+
+#[test]
+fn rows_that_are_missing_are_told_and_can_be_required() {
+    let trial = Trial::new();
+    let reference = trial.run("four-bar-a", "reference.h5", &["run.duration=0.0009"]);
+    let columns = ["angle.coupler", "angular_velocity.coupler", "clearance_x.A"];
+    let all = trial.write("all.csv", &table(&reference, &columns, |_| true));
+    let gate = ["--require-digits", "9"];
+    let outcome = trial.compare(&all, &reference, &gate);
+    assert_eq!((outcome.code, &*outcome.err), (0, ""), "{}", outcome.out);
+    assert!(outcome.out.contains("coverage   all of the time; 3 of 10 columns"), "{}", outcome.out);
+    for keep in [(|row| !(30..60).contains(&row)) as fn(usize) -> bool, |row| row % 3 != 1] {
+        let some = trial.write("some.csv", &table(&reference, &columns, keep));
+        let outcome = trial.compare(&some, &reference, &gate);
+        assert_eq!(outcome.code, 0, "{}", outcome.err);
+        assert!(outcome.err.contains("warning: ") && outcome.err.contains("nothing between"));
+        assert!(outcome.out.contains("note: rows are missing"), "{}", outcome.out);
+        let outcome =
+            trial.compare(&some, &reference, &[&gate[..], &["--require-times", "0.9"]].concat());
+        assert_eq!(outcome.code, 1, "{}", outcome.out);
+        assert!(outcome.err.contains("falls short of 90.0 % of the time"), "{}", outcome.err);
+        let json = trial.json(&some, &reference, &["--require-times", "0.6"]);
+        assert_eq!(json["requirement"]["met"], true);
+        let share = number(&json["coverage"]["time"]);
+        assert!((0.63..0.70).contains(&share), "{share}");
+    }
+    let columns = |share| trial.compare(&all, &reference, &["--require-columns", share]);
+    assert_eq!(columns("0.3").code, 0);
+    let outcome = columns("0.31");
+    assert_eq!(outcome.code, 1);
+    assert!(outcome.err.contains("31.0 % of the columns: it covers all of the time; 3 of 10"));
+    check_bad(&columns("1.1"), "--require-columns");
+}
+
+#[test]
+fn digits_of_what_drives_prescribe_are_no_digits_of_the_motion() {
+    let trial = Trial::new();
+    let reference = trial.run("four-bar-a", "reference.h5", &["run.duration=0.001"]);
+    let theirs = trial.write("theirs.csv", &table(&reference, &["angle.crank"], |_| true));
+    let outcome = trial.compare(&theirs, &reference, &[]);
+    assert_eq!(outcome.code, 0);
+    assert!(outcome.out.contains("note: nothing of "), "{}", outcome.out);
+    let outcome = trial.compare(&theirs, &reference, &["--require-digits", "6"]);
+    assert_eq!(outcome.code, 1, "{}", outcome.out);
+    assert!(outcome.err.contains("prescribed by drives"), "{}", outcome.err);
+}
+
+#[test]
+fn the_same_number_written_otherwise_is_the_same_mechanism() {
+    let trial = Trial::new();
+    let reference = trial.run("four-bar-a", "reference.h5", &["run.duration=0.0005"]);
+    let set = ["run.duration=0.0005", "drives.crank.speed_rpm=5e3", "bodies.coupler.mass=737e-4"];
+    let theirs = trial.run("four-bar-a", "theirs.h5", &set);
+    let json = trial.json(&theirs, &reference, &[]);
+    assert_eq!(json["identical"], "everything");
+}
+
+/// The joint force at A is zero until the first contact, at 0.48 ms, and so is the torque.
+#[test]
+fn forces_that_are_zero_but_for_rounding_agree() {
+    let trial = Trial::new();
+    let short = ["run.duration=0.0004"];
+    let run = trial.run("four-bar-a", "run.h5", &short);
+    let explicit = ["run.duration=0.0004", "solver.engine=explicit", "solver.precision=71"];
+    let truth = trial.run("four-bar-a", "truth.h5", &explicit);
+    let json = trial.json(&run, &truth, &["--forces"]);
+    let fewest = number(&json["gate"]["fewest"]["digits"]);
+    assert!(fewest > 8.0, "{}", json["gate"]["fewest"]);
+}
+
+#[test]
+fn a_certified_reference_that_was_changed_is_refused() {
+    let trial = Trial::new();
+    let certified = data("certified/four-bar-a.h5");
+    let copy = trial.path("copy.h5");
+    std::fs::copy(&certified, &copy).unwrap();
+    let untouched = trial.compare(&certified, &copy, &["--common-times", "--until", "0.001"]);
+    assert_eq!(untouched.code, 0, "{}", untouched.err);
+    assert!(!untouched.out.contains("sealed"), "{}", untouched.out);
+    compared::change(&copy, "angle", |values| values[50] += 1e-9);
+    check_bad(&trial.compare(&certified, &copy, &[]), "changed after it was certified");
+    compared::remove_attribute(&copy, "certificate_sha256");
+    let outcome = trial.compare(&certified, &copy, &["--common-times"]);
+    assert!(outcome.out.contains("its certificate is not sealed"), "{}", outcome.out);
+}

@@ -6,6 +6,7 @@
 
 mod recorded;
 
+use freeplay::record::{Attribute, ResultFile, SCHEMA_VERSION, Seal};
 use recorded::{Expected, Recorded};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -109,6 +110,52 @@ fn xarray_reads_everything_by_the_engine_netcdf4() {
 fn xarray_reads_everything_by_the_engine_h5netcdf() {
     for trial in trials() {
         trial.script(&python(), "with_xarray.py", &["h5netcdf"]);
+    }
+}
+
+/// Has xarray save a file again, by each of its engines.
+fn saved_again(file: &Path, folder: &Path) -> Vec<PathBuf> {
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/interoperability/save_again.py");
+    let save = |engine: &str| {
+        let output = folder.join(format!("{engine}.h5"));
+        let mut command = Command::new(python());
+        command.arg(&script).arg(file).arg(&output).arg(engine);
+        said_by(command);
+        output
+    };
+    ["netcdf4", "h5netcdf"].map(save).to_vec()
+}
+
+#[test]
+fn files_that_xarray_has_saved_again_are_read_as_they_were() {
+    for trial in trials() {
+        for path in saved_again(&trial.result, trial.folder.path()) {
+            let file = ResultFile::open(&path).unwrap();
+            assert_eq!(file.text("case_toml"), Some(&*trial.run.header.case_text));
+            assert_eq!(file.attribute("schema_version"), Some(&Attribute::Integer(SCHEMA_VERSION)));
+            assert!(file.is_complete());
+            assert_eq!(file.bodies(), trial.run.header.bodies);
+            assert_eq!(file.clearances(), trial.run.header.clearances);
+            for Expected { name, values, .. } in trial.run.expected() {
+                if freeplay::record::DATASETS.iter().any(|dataset| dataset.name == name) {
+                    let found = file.table(name).unwrap().values;
+                    let bits = |list: &[f64]| list.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
+                    assert_eq!(bits(&found), bits(&values), "{name} of {}", path.display());
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_certificate_keeps_its_seal_where_xarray_saves_it_again() {
+    let certified =
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/certified/four-bar-a.h5");
+    let folder = tempfile::tempdir().unwrap();
+    assert_eq!(ResultFile::open(&certified).unwrap().seal().unwrap(), Seal::Whole);
+    for path in saved_again(&certified, folder.path()) {
+        let seal = ResultFile::open(&path).unwrap().seal().unwrap();
+        assert_eq!(seal, Seal::Whole, "{}", path.display());
     }
 }
 

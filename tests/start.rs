@@ -5,8 +5,8 @@
 mod simulated;
 
 use freeplay::case::Case;
-use freeplay::certify::Scales;
 use freeplay::clearance::Mode;
+use freeplay::digits::{Scales, Sizes};
 use freeplay::mechanism::Mechanism;
 use freeplay::scalar::{F256, Scalar};
 use freeplay::simulate::assemble;
@@ -26,12 +26,12 @@ fn all_cases() -> Vec<(String, Case)> {
 fn digits_of_start(case: &Case) -> f64 {
     let doubles: Mechanism<f64> = told(assemble(case));
     let exact: Mechanism<F256> = told(assemble(case));
-    let radial = doubles.model().clearances().iter().map(|clearance| clearance.radial).collect();
+    let sizes = Sizes::of(&doubles);
     let [doubles, exact] = [
         doubles.observe(0.0, &doubles.start().integrals),
         exact.observe(0.0, &exact.start().integrals),
     ];
-    let scales = Scales::of(std::slice::from_ref(&exact), radial);
+    let scales = Scales::of(std::slice::from_ref(&exact), &sizes);
     -scales.differences(&doubles, &exact).state.log10()
 }
 

@@ -4,23 +4,24 @@
 //! companion is off, and by what it loses when written as doubles; a run by its distance from the
 //! reference and what the reference is wrong by.
 
-mod digits;
+mod cross;
 mod growth;
-mod matching;
+mod json;
 mod reference;
 mod report;
 mod stored;
 mod tangent;
 
-pub use digits::{MOST_DIGITS, Parts, Scales, digits};
-pub use matching::{Match, Parting};
+pub use cross::{CrossCheck, Disagreement, check_run, cross_check};
 pub use reference::{Error, Growth, Stage, Stopped, Watch};
+pub use report::Told;
 pub use stored::NotAReference;
 pub use tangent::{Tangent, tangent};
 
 use crate::case::Case;
+use crate::digits::{self, Parting, Parts, Scales, digits};
 use crate::record::ResultFile;
-use crate::run::{Schedule, Trajectory, Watcher};
+use crate::run::{Event, Peak, Schedule, Trajectory, Watcher};
 use crate::simulate::{self, Simulation, Statistics};
 use std::convert::Infallible;
 use std::f64::consts::LOG10_E;
@@ -47,10 +48,33 @@ pub struct Reference {
     pub tolerances: [f64; 2],
     /// How a small change of the start grows.
     pub growth: Growth,
-    /// Whether it goes to the end that was asked for.
+    /// The end that was asked for (s).
+    pub until: f64,
+    /// Whether it goes to that end.
     pub complete: bool,
     /// Why it does not, if a run behind it stopped.
     pub stopped: Option<String>,
+}
+
+/// What a run has of an event of the reference.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Match {
+    /// Time of the run's event less that of the reference (s); `None` if the run has none.
+    pub late: Option<f64>,
+    /// Whether it counts: behind the end of doubles what is matched is matched by chance, and in the
+    /// last instants it may come just behind the end.
+    pub counts: bool,
+}
+
+/// What a run has of the peaks of the reference, as far as doubles follow it.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Peaks {
+    /// How many the reference has.
+    pub of: usize,
+    /// How many of them the run has.
+    pub found: usize,
+    /// Largest error of the force of one that it has, over the scale of forces.
+    pub error: f64,
 }
 
 /// A run held against a certified reference.
@@ -62,8 +86,10 @@ pub struct Certificate {
     pub claims: Vec<Claim>,
     /// What the run has of each event of the reference.
     pub events: Vec<Match>,
-    /// Where run and reference have different events, if they do.
+    /// The first event that only one of the two has, as far as doubles follow the case.
     pub parting: Option<Parting>,
+    /// What the run has of each contact's peaks.
+    pub peaks: Peaks,
     /// Why the run under test stopped, if it did.
     pub run_failure: Option<String>,
     /// What the run under test counted.
@@ -84,17 +110,38 @@ pub fn reference(
     let pair = reference::references(case, schedule, digits, watch)?;
     let growth = reference::growth(case, schedule, &pair, watch)?;
     let scales = pair.scales;
+    let mut grown: f64 = 1.0;
+    let mut factors = growth.factors.iter();
     let wrong = (pair.tight.samples.iter().zip(&pair.apart))
         .map(|(sample, apart)| {
-            scales.rounding(sample).zip(*apart, |lost, apart| lost + 2.0 * apart)
+            // what the start is off by, which no two runs from it show, grows along with them
+            grown = factors.next().map_or(grown, |factor| grown.max(*factor));
+            let shared = pair.start * grown;
+            scales.rounding(sample).zip(*apart, |lost, apart| lost + 2.0 * apart + shared)
         })
         .collect::<Vec<_>>();
-    let mut trajectory = pair.tight;
-    trajectory.samples.truncate(wrong.len());
-    let complete = wrong.len() as u64 >= schedule.len();
-    let stopped = pair.stopped.map(|stopped| chain(&stopped));
-    let tolerances = pair.tolerances;
-    Ok(Reference { trajectory, wrong, scales, tolerances, growth, complete, stopped })
+    let whole = wrong.len() as u64 >= schedule.len();
+    let stopped = match (&pair.stopped, &pair.parting) {
+        (Some(stopped), _) => Some(chain(stopped)),
+        (None, Some(parting)) => {
+            Some(format!("the two runs have different events from {:e} s on", parting.event.time))
+        }
+        (None, None) => None,
+    };
+    let mut reference = Reference {
+        trajectory: pair.tight,
+        wrong,
+        scales,
+        tolerances: pair.tolerances,
+        growth,
+        until: schedule.duration(),
+        complete: whole,
+        stopped,
+    };
+    if !whole {
+        reference.cut(reference.wrong.len());
+    }
+    Ok(reference)
 }
 
 /// An error with all its causes.
@@ -109,22 +156,27 @@ fn chain(error: &dyn std::error::Error) -> String {
     words
 }
 
-/// A certified reference that was kept.
+/// A certified reference that was kept, as far as the duration that the case asks for.
 ///
 /// # Errors
-/// The file holds no certificate, or that of another case.
+/// The file holds no certificate, or one that is not sealed or was changed since, or that of
+/// another case.
 pub fn stored(case: &Case, file: &ResultFile) -> Result<Reference, NotAReference> {
     stored::read(case, file)
 }
 
-/// Runs a case as its plan says and holds it against a reference.
+/// Runs a case as its plan says and holds it against a reference, at the times of the reference.
+///
+/// # Errors
+/// See [`simulate::Error`]; that the run stops is none.
 pub fn certify(
     simulation: Simulation<'_>,
     reference: Reference,
     watch: Watcher<'_>,
 ) -> Result<Certificate, simulate::Error<Infallible>> {
+    let times = reference.trajectory.samples.iter().map(|sample| sample.time).collect();
     let mut run = Trajectory::default();
-    let (statistics, ran) = simulation.run(&mut run, watch);
+    let (statistics, ran) = simulation.sampled_at(times).run(&mut run, watch);
     let run_failure = match ran {
         Ok(()) => None,
         Err(simulate::Error::Interrupted { time }) => {
@@ -133,8 +185,48 @@ pub fn certify(
         Err(error) => Some(chain(&error)),
     };
     let claims = claims(&run, &reference);
-    let (events, parting) = matching::events(&run, &reference.trajectory);
-    Ok(Certificate { reference, claims, events, parting, run_failure, statistics })
+    let until = reference.followed_until();
+    let (events, parting) = events(&run.events, &reference.trajectory.events, until);
+    let peaks = peaks(&run.peaks, &reference, until);
+    Ok(Certificate { reference, claims, events, parting, peaks, run_failure, statistics })
+}
+
+/// What a run has of each event of a reference, up to a time (s), and where the two part.
+fn events(run: &[Event], reference: &[Event], until: f64) -> (Vec<Match>, Option<Parting>) {
+    let likes = digits::events(run, reference, until);
+    let mut lone = likes.only_reference.iter().peekable();
+    let matches =
+        reference.iter().zip(&likes.of_reference).enumerate().map(|(k, (event, like))| {
+            let like = like.filter(|_| event.time <= until);
+            let is_lone = lone.next_if(|lone| **lone == k).is_some();
+            Match {
+                late: like.map(|like| run[like].time - event.time),
+                counts: is_lone || like.is_some(),
+            }
+        });
+    (matches.collect(), likes.parting(run, reference))
+}
+
+/// What a run has of the peaks of a reference, up to a time (s).
+fn peaks(run: &[Peak], reference: &Reference, until: f64) -> Peaks {
+    let mut found = Peaks::default();
+    for k in 0..reference.scales.clearances.len() {
+        let of = |peaks: &[Peak]| -> Vec<Peak> {
+            let counts = |peak: &&Peak| peak.clearance == k && peak.time <= until;
+            peaks.iter().filter(counts).copied().collect()
+        };
+        let (theirs, true_peaks) = (of(run), of(&reference.trajectory.peaks));
+        let times = |peaks: &[Peak]| peaks.iter().map(|peak| peak.time).collect::<Vec<_>>();
+        let likes = digits::one_to_one(&times(&theirs), &times(&true_peaks), until);
+        found.of += true_peaks.len();
+        for (peak, like) in true_peaks.iter().zip(likes) {
+            let Some(like) = like else { continue };
+            let error = (theirs[like].force - peak.force).abs() / reference.scales.force;
+            found.found += 1;
+            found.error = if error.is_nan() { f64::INFINITY } else { found.error.max(error) };
+        }
+    }
+    found
 }
 
 /// Claims at each sample of the reference; the run has the same sample times as far as it goes.
@@ -166,6 +258,27 @@ impl Reference {
 }
 
 impl Reference {
+    /// Leaves the first samples only, and of everything else what lies before the last of them. A
+    /// contact that has not ended by then is left out: its largest force may lie behind.
+    fn cut(&mut self, samples: usize) {
+        let Trajectory { samples: all, events, contacts, peaks } = &mut self.trajectory;
+        all.truncate(samples);
+        self.wrong.truncate(samples);
+        self.growth.factors.truncate(samples);
+        let end = all.last().map_or(0.0, |sample| sample.time);
+        events.retain(|event| event.time <= end);
+        contacts.retain(|contact| contact.end <= end);
+        peaks.retain(|peak| peak.time <= end);
+        self.growth.double_precision_ends =
+            self.growth.double_precision_ends.filter(|time| *time <= end);
+    }
+
+    /// Last time (s) of the reference at which a run in doubles can still be held against it.
+    fn followed_until(&self) -> f64 {
+        let last = self.trajectory.samples.last().map_or(0.0, |sample| sample.time);
+        self.growth.double_precision_ends.map_or(last, |ends| ends.min(last))
+    }
+
     /// Time (s) up to which the growth of errors is known, where that is not the end.
     pub fn growth_known_until(&self) -> Option<f64> {
         let known = self.growth.factors.len();
@@ -195,5 +308,86 @@ impl Certificate {
     fn holds(&self, digits: f64, of: fn(&Claim) -> f64) -> Option<f64> {
         let held = self.claims.iter().take_while(|claim| of(claim) >= digits).count();
         Some(self.reference.trajectory.samples[held.checked_sub(1)?].time)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mechanism::Observation;
+    use crate::run::{Contact, EventKind};
+
+    fn event(time: f64) -> Event {
+        Event { time, clearance: 0, kind: EventKind::ContactBegins, rate: 1.0 }
+    }
+
+    /// Samples at 0, 1, … 4 s, and an event, a contact and a peak behind each.
+    fn reference() -> Reference {
+        let contact = |k: u32| Contact {
+            clearance: 0,
+            begin: f64::from(k) + 0.2,
+            end: f64::from(k) + 0.8,
+            impact_rate: 1.0,
+            peak_penetration: 1e-6,
+            peak_force: 1.0,
+            peak_time: f64::from(k) + 0.5,
+            dissipated: 0.0,
+        };
+        let peak = |k: u32| Peak { time: f64::from(k) + 0.5, clearance: 0, force: 10.0 };
+        let sample = |k: u32| Observation { time: f64::from(k), ..Observation::default() };
+        let sizes = digits::Sizes { mass: 1.0, length: 1.0, rate: 1.0, clearances: vec![1e-3] };
+        let trajectory = Trajectory {
+            samples: (0..5).map(sample).collect(),
+            events: (0..5).map(|k| event(f64::from(k) + 0.2)).collect(),
+            contacts: (0..5).map(contact).collect(),
+            peaks: (0..5).map(peak).collect(),
+        };
+        Reference {
+            scales: Scales::of(&trajectory.samples, &sizes),
+            wrong: vec![Parts::all(1e-16); 5],
+            trajectory,
+            tolerances: [1e-29, 1e-24],
+            growth: Growth { factors: vec![1.0; 5], double_precision_ends: Some(3.5) },
+            until: 4.0,
+            complete: false,
+            stopped: None,
+        }
+    }
+
+    #[test]
+    fn tables_end_with_the_last_sample() {
+        let mut reference = reference();
+        reference.cut(3);
+        let Trajectory { samples, events, contacts, peaks } = &reference.trajectory;
+        let lengths = [samples.len(), events.len(), contacts.len(), peaks.len()];
+        assert_eq!(lengths, [3, 2, 2, 2]);
+        assert_eq!((reference.wrong.len(), reference.growth.factors.len()), (3, 3));
+        assert_eq!(reference.growth.double_precision_ends, None);
+    }
+
+    #[test]
+    fn what_is_matched_behind_the_end_of_doubles_does_not_count() {
+        let reference = reference();
+        let until = reference.followed_until();
+        assert_eq!(until, 3.5);
+        let run: Vec<Event> = [0.2, 1.21, 3.2, 3.6, 4.2].map(event).to_vec();
+        let (matches, parting) = events(&run, &reference.trajectory.events, until);
+        let late: Vec<bool> = matches.iter().map(|found| found.late.is_some()).collect();
+        assert_eq!(late, [true, true, false, true, false]);
+        let counts: Vec<bool> = matches.iter().map(|found| found.counts).collect();
+        assert_eq!(counts, [true, true, true, true, false]);
+        assert_eq!(parting.map(|parting| parting.event.time), Some(2.2));
+    }
+
+    #[test]
+    fn peaks_are_found_and_their_largest_error_is_told() {
+        let mut reference = reference();
+        reference.scales.force = 100.0;
+        let mut run = reference.trajectory.peaks.clone();
+        run[1].force = 10.5;
+        run.remove(0);
+        let found = peaks(&run, &reference, 3.5);
+        assert_eq!((found.of, found.found), (4, 3));
+        assert!((found.error - 5e-3).abs() < 1e-15);
     }
 }

@@ -5,8 +5,8 @@
 //! less: what both agree on, the tighter one certifies. The first pair is as loose as may do;
 //! where it parts too early, the rate at which it parted tells how tight the next must be.
 
-use super::digits::{Parts, Scales};
 use crate::case::{self, Case};
+use crate::digits::{self, Parting, Parts, Scales, Sizes};
 use crate::mechanism::{Mechanism, Observation};
 use crate::run::{Contact, Event, Peak, Progress, Recorder, Schedule, Trajectory};
 use crate::scalar::F256;
@@ -24,6 +24,8 @@ const APART: f64 = 5.0;
 const TO_SPARE: f64 = 3.0;
 /// The first pair: exponent of its looser tolerance.
 const FIRST: f64 = 24.0;
+/// By how much a pair is tighter than one of which a run stopped: the next is not, as a rule, in its way.
+const OTHERS: [f64; 3] = [1.0, 4.0, 7.0];
 /// Change of the start that shows what no double-precision run can know.
 const DOUBLE_PRECISION: f64 = 1e-16;
 /// Scaled changes are linear in the change of the start up to here.
@@ -44,8 +46,12 @@ pub struct Pair {
     pub apart: Vec<Parts<f64>>,
     /// Tolerances of the tighter and of the looser run.
     pub tolerances: [f64; 2],
+    /// What the start, which both share, may be off by, over its size.
+    pub start: f64,
     /// Scales of the tighter run.
     pub scales: Scales,
+    /// The first event that only one of the two has, over the samples that both have.
+    pub parting: Option<Parting>,
     /// Why one of the runs stopped short, if one did.
     pub stopped: Option<Stopped>,
 }
@@ -68,6 +74,15 @@ pub enum Error {
     /// A reference run stopped before there was anything to certify.
     #[error(transparent)]
     Stopped(#[from] Stopped),
+    /// The two runs differ from their start on.
+    #[error(
+        "the reference runs at tolerances of {:e} and {:e} do not start with the same contacts",
+        tolerances[0], tolerances[1]
+    )]
+    DifferentStarts {
+        /// Tolerances of the tighter and of the looser run.
+        tolerances: [f64; 2],
+    },
     /// The case cannot be assembled in 71 digits.
     #[error(transparent)]
     Case(#[from] case::Error),
@@ -94,7 +109,7 @@ struct Side<'a> {
     /// Set once the two have parted.
     parted: &'a AtomicBool,
     least: f64,
-    clearances: &'a [f64],
+    sizes: &'a Sizes,
 }
 
 impl Side<'_> {
@@ -104,7 +119,7 @@ impl Side<'_> {
         both[self.which].extend(self.kept.samples.last().cloned());
         let newest = both[0].len().min(both[1].len());
         let Some(newest) = newest.checked_sub(1) else { return };
-        let scales = Scales::of(&both[0][newest..=newest], self.clearances.to_vec());
+        let scales = Scales::of(&both[0][newest..=newest], self.sizes);
         let difference = scales.differences(&both[0][newest], &both[1][newest]);
         if !(difference.state < self.least) {
             self.parted.store(true, Ordering::Relaxed);
@@ -135,7 +150,7 @@ impl Recorder for Side<'_> {
 }
 
 /// References that agree to `digits` (and a little more) to the end of the schedule, or as far as
-/// 71-digit arithmetic reaches.
+/// 71-digit arithmetic reaches. Where a run stops, pairs at other tolerances are tried.
 ///
 /// # Errors
 /// See [`Error`].
@@ -146,25 +161,57 @@ pub fn references(
     watch: Watch<'_>,
 ) -> Result<Pair, Error> {
     let least = 10f64.powf(-digits - 1.0);
+    let mut furthest: Option<Pair> = None;
+    let mut others = OTHERS.iter();
     let mut loose = FIRST.max(digits + 6.0);
-    loop {
+    let pair = loop {
         let pair = pair(case, schedule, loose, least, watch)?;
         let agreed = pair.agreed_until(least);
-        // as far as a run that stopped came, there may be agreement too
-        let whole = pair.apart.len() as u64 >= schedule.len() || pair.stopped.is_some();
-        if (whole && agreed == pair.apart.len()) || loose + APART >= TIGHTEST {
-            return match pair.stopped {
-                Some(stopped) if pair.apart.is_empty() => Err(Error::Stopped(stopped)),
-                _ => Ok(pair),
-            };
+        let tightest = loose + APART >= TIGHTEST;
+        if pair.failed() && agreed == pair.apart.len() {
+            // as far as the run that stopped came, there was agreement
+            let further = pair.or_further(furthest.take(), least);
+            match others.next().filter(|_| !tightest) {
+                None => break further,
+                Some(more) => loose = (loose + more).min(TIGHTEST - APART),
+            }
+            furthest = Some(further);
+            continue;
         }
-        let lost = (loose - digits) / pair.tight.samples[agreed.saturating_sub(1)].time.max(1e-300);
+        let whole = pair.apart.len() as u64 >= schedule.len();
+        if (whole && agreed == pair.apart.len()) || tightest {
+            break pair.or_further(furthest.take(), least);
+        }
+        let time = pair.tight.samples.get(agreed.saturating_sub(1)).map_or(0.0, |s| s.time);
+        let lost = (loose - digits) / time.max(1e-300);
         let needed = digits + TO_SPARE + lost * schedule.duration::<f64>();
         loose = needed.max(loose + 4.0).min(TIGHTEST - APART).ceil();
+    };
+    match pair {
+        Pair { stopped: Some(stopped), apart, .. } if apart.is_empty() => {
+            Err(Error::Stopped(stopped))
+        }
+        Pair { apart, tolerances, .. } if apart.is_empty() => {
+            Err(Error::DifferentStarts { tolerances })
+        }
+        pair => Ok(pair),
     }
 }
 
 impl Pair {
+    /// Whether a run stopped, or the two have different events.
+    fn failed(&self) -> bool {
+        self.stopped.is_some() || self.parting.is_some()
+    }
+
+    /// This pair, or another that agreed further.
+    fn or_further(self, other: Option<Pair>, least: f64) -> Pair {
+        match other {
+            Some(other) if other.agreed_until(least) > self.agreed_until(least) => other,
+            _ => self,
+        }
+    }
+
     /// Number of leading samples at which the two differ by less than `least`.
     pub fn agreed_until(&self, least: f64) -> usize {
         self.apart.iter().take_while(|apart| apart.state < least).count()
@@ -181,7 +228,8 @@ fn pair(
 ) -> Result<Pair, Error> {
     let tolerances = [loose + APART, loose].map(|exponent| 10f64.powf(-exponent));
     let mechanism: Mechanism<F256> = assemble(case)?;
-    let clearances = clearances(&mechanism);
+    let start = mechanism.start_accuracy();
+    let sizes = Sizes::of(&mechanism);
     let both = Mutex::new([Vec::new(), Vec::new()]);
     let parted = AtomicBool::new(false);
     let side = |which: usize| {
@@ -191,7 +239,7 @@ fn pair(
             which,
             parted: &parted,
             least,
-            clearances: &clearances,
+            sizes: &sizes,
         };
         let tolerance = tolerances[which];
         let ran = run(case, mechanism.clone(), schedule, tolerance, &mut side, &parted, watch);
@@ -208,12 +256,19 @@ fn pair(
     });
     let loose = loose.unwrap_or_else(|panic| std::panic::resume_unwind(panic));
     let ((tight, tight_stopped), (loose, loose_stopped)) = (tight?, loose?);
-    let scales = Scales::of(&tight.samples, clearances);
-    let apart = (tight.samples.iter().zip(&loose.samples))
+    let scales = Scales::of(&tight.samples, &sizes);
+    let mut apart: Vec<Parts<f64>> = (tight.samples.iter().zip(&loose.samples))
         .map(|(tight, loose)| scales.differences(tight, loose))
         .collect();
     let stopped = tight_stopped.or(loose_stopped);
-    Ok(Pair { tight, apart, tolerances, scales, stopped })
+    let until = apart.len().checked_sub(1).map_or(0.0, |last| tight.samples[last].time);
+    let likes = digits::events(&loose.events, &tight.events, until);
+    let parting = likes.parting(&loose.events, &tight.events);
+    if let Some(parting) = parting {
+        let before = |sample: &Observation| sample.time < parting.event.time;
+        apart.truncate(tight.samples.partition_point(before));
+    }
+    Ok(Pair { tight, apart, tolerances, start, scales, parting, stopped })
 }
 
 /// One run; that the runs of a pair have parted is no error.
@@ -348,15 +403,4 @@ impl Recorder for Against<'_> {
     fn peak(&mut self, _: Peak) -> Result<(), Infallible> {
         Ok(())
     }
-}
-
-/// Radial clearances (m).
-fn clearances(mechanism: &Mechanism<F256>) -> Vec<f64> {
-    let radial = |clearance: &crate::clearance::Clearance<F256>| clearance.radial;
-    mechanism
-        .model()
-        .clearances()
-        .iter()
-        .map(|c| crate::scalar::Scalar::to_f64(radial(c)))
-        .collect()
 }

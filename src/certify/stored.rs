@@ -1,10 +1,12 @@
 //! A certified reference in a result file.
 
-use super::{Certificate, Claim, Growth, Parts, Reference, Scales};
+use super::{Certificate, Claim, Growth, Reference};
 use crate::case::{self, Case};
+use crate::digits::{Parts, Scales, Sizes};
 use crate::mechanism::{BodyObservation, ClearanceObservation, JointObservation, Observation};
-use crate::record::{Attribute, Dimension, ResultFile, Series, Values};
+use crate::record::{Attribute, Dimension, ResultFile, Seal, Series, Values};
 use crate::run::Trajectory;
+use crate::simulate::assemble;
 
 /// A file that does not serve as the reference of a case.
 #[derive(Debug, thiserror::Error)]
@@ -19,6 +21,32 @@ pub enum NotAReference {
         file: String,
         /// What is missing.
         what: &'static str,
+    },
+    /// The certificate has no seal.
+    #[error(
+        "the certificate in {file} is not sealed: it was made before certificates were, or its \
+         attribute certificate_sha256 was lost; `freeplay certify` makes it again"
+    )]
+    NotSealed {
+        /// The file.
+        file: String,
+    },
+    /// The file was changed after it was sealed.
+    #[error(
+        "{file} was changed after it was certified: its contents are not those that its seal, \
+         the attribute certificate_sha256, is of"
+    )]
+    Broken {
+        /// The file.
+        file: String,
+    },
+    /// The reference has no sample within the duration asked for.
+    #[error("the reference in {file} has no sample up to {until} s")]
+    NoSamples {
+        /// The file.
+        file: String,
+        /// The duration asked for (s).
+        until: f64,
     },
     /// The case in the file cannot be read.
     #[error("the case in {file} cannot be read")]
@@ -73,13 +101,18 @@ impl Certificate {
             values: self.claims.iter().map(of).collect(),
         });
         let late = self.events.iter().map(|event| event.late);
+        let found = self.events.iter().map(|event| match (event.counts, event.late) {
+            (true, None) => 0.0,
+            (true, Some(_)) => 1.0,
+            (false, _) => 2.0,
+        });
         let in_run = Series {
             name: "event_in_run",
             unit: "1",
             long_name: "whether the run under test has this event",
-            stored: Values::Flag(&["missing", "found"]),
+            stored: Values::Flag(&["missing", "found", "beyond_doubles"]),
             along: Dimension::Event,
-            values: late.clone().map(|late| f64::from(u8::from(late.is_some()))).collect(),
+            values: found.collect(),
         };
         let by = Series {
             name: "event_time_error",
@@ -107,7 +140,8 @@ impl Certificate {
 impl Reference {
     /// The attributes that a certificate adds to a result file.
     pub fn attributes(&self) -> Vec<(String, Attribute)> {
-        let Scales { angle, angular_velocity, velocity, clearances, force, torque } = &self.scales;
+        let Scales { angle, angular_velocity, velocity, clearances, force, torque, .. } =
+            &self.scales;
         let mut attributes = vec![
             ("reference_tolerance_tight".to_owned(), self.tolerances[0]),
             ("reference_tolerance_loose".to_owned(), self.tolerances[1]),
@@ -125,25 +159,30 @@ impl Reference {
     }
 }
 
-/// Reads a reference back: it is as certain as its file says, and no finer than doubles.
+/// Reads a reference back, as far as the case asks for: it is as certain as its file says, and no
+/// finer than doubles.
 pub(super) fn read(case: &Case, file: &ResultFile) -> Result<Reference, NotAReference> {
     let name = || file.path().display().to_string();
-    let kept = same_mechanism(case, file)?;
-    let last = file.times()?.last().copied().unwrap_or(0.0);
-    let complete = last >= kept.plan.duration.to_f64() * (1.0 - 1e-12);
-    let need = |attribute: &'static str| {
-        let missing = NotAReference::NoCertificate { file: name(), what: attribute };
-        file.number(attribute).ok_or(missing)
-    };
     let claim = |of: &'static str| {
         let digits = file.over_time(of)?;
         digits.ok_or_else(|| NotAReference::NoCertificate { file: name(), what: of })
     };
-    let (state, forces, torque) = (
-        claim("reference_digits")?,
-        claim("reference_digits_forces")?,
-        claim("reference_digits_torque")?,
-    );
+    let state = claim("reference_digits")?;
+    match file.seal()? {
+        Seal::Whole => {}
+        Seal::Missing => return Err(NotAReference::NotSealed { file: name() }),
+        Seal::Broken => return Err(NotAReference::Broken { file: name() }),
+    }
+    let kept = same_mechanism(case, file)?;
+    let mechanism: crate::mechanism::Mechanism<f64> =
+        assemble(&kept).map_err(|source| NotAReference::Case { file: name(), source })?;
+    let until = case.plan.duration.to_f64();
+    let last = file.times()?.last().copied().unwrap_or(0.0);
+    let need = |attribute: &'static str| {
+        let missing = NotAReference::NoCertificate { file: name(), what: attribute };
+        file.number(attribute).ok_or(missing)
+    };
+    let (forces, torque) = (claim("reference_digits_forces")?, claim("reference_digits_torque")?);
     let growth = claim("error_growth")?;
     let wrong = |digits: f64| 10f64.powf(-digits);
     let wrong = (state.iter().zip(&forces).zip(&torque))
@@ -152,30 +191,42 @@ pub(super) fn read(case: &Case, file: &ResultFile) -> Result<Reference, NotARefe
     let clearances = (0..file.clearances().len())
         .map(|k| file.number(&format!("scale_clearance_{k}")).unwrap_or(1.0))
         .collect();
-    Ok(Reference {
+    let samples = samples(file)?;
+    let scales = Scales {
+        angle: need("scale_angle")?,
+        angular_velocity: need("scale_angular_velocity")?,
+        velocity: need("scale_velocity")?,
+        clearances,
+        force: need("scale_force")?,
+        torque: need("scale_torque")?,
+        ..Scales::of(&samples, &Sizes::of(&mechanism))
+    };
+    let within = samples.partition_point(|sample| sample.time <= until);
+    let mut reference = Reference {
         trajectory: Trajectory {
-            samples: samples(file)?,
+            samples,
             events: file.events()?,
             contacts: file.contacts()?,
             peaks: file.peaks()?,
         },
         wrong,
-        scales: Scales {
-            angle: need("scale_angle")?,
-            angular_velocity: need("scale_angular_velocity")?,
-            velocity: need("scale_velocity")?,
-            clearances,
-            force: need("scale_force")?,
-            torque: need("scale_torque")?,
-        },
+        scales,
         tolerances: [need("reference_tolerance_tight")?, need("reference_tolerance_loose")?],
         growth: Growth {
             factors: growth.into_iter().take_while(|factor| factor.is_finite()).collect(),
             double_precision_ends: file.number("double_precision_ends"),
         },
-        complete,
+        until,
+        complete: last >= until,
         stopped: None,
-    })
+    };
+    if within == 0 {
+        return Err(NotAReference::NoSamples { file: name(), until });
+    }
+    if within < reference.trajectory.samples.len() {
+        reference.cut(within);
+    }
+    Ok(reference)
 }
 
 /// The case in the file, if its mechanism is that of the case.

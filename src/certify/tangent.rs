@@ -6,9 +6,9 @@
 //! Its length, in the scales that digits are counted by, over its length at the start says how
 //! much an error made there has grown.
 
-use super::digits::{MOST_DIGITS, Scales};
 use super::growth;
 use crate::case::{Case, EngineName, Precision};
+use crate::digits::{MOST_DIGITS, Scales, Sizes};
 use crate::mechanism::Mechanism;
 use crate::record::{Dimension, Series, Values};
 use crate::run::{Schedule, Trajectory, Watcher};
@@ -58,8 +58,7 @@ pub fn tangent(
         case: case.name.clone(),
         source: Box::new(source),
     })?;
-    let clearances = mechanism.model().clearances().iter().map(|c| c.radial).collect();
-    let scales = Scales::of(&kept.samples, clearances);
+    let scales = Scales::of(&kept.samples, &Sizes::of(&mechanism));
     let times = kept.samples.iter().map(|sample| sample.time).collect();
     let lengths = kept.samples.iter().map(|sample| scales.beyond(sample)).collect();
     Ok(Tangent::new(times, lengths))

@@ -3,8 +3,8 @@
 use super::signals::Signals;
 use super::{CaseArguments, Failure};
 use crate::case::Case;
-use crate::certify::{self, Certificate, Reference, Stage};
-use crate::record::{Ending, Outcome, ResultFile, Writer, utc};
+use crate::certify::{self, Certificate, Reference, Stage, Told};
+use crate::record::{Ending, Outcome, ResultFile, Writer, sha256, utc};
 use crate::run::{Recorder, Schedule};
 use crate::simulate::{self, Simulation};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -31,6 +31,9 @@ pub struct Arguments {
     /// A certified reference made before, of the same mechanism.
     #[arg(long, value_name = "FILE")]
     reference: Option<PathBuf>,
+    /// Print JSON.
+    #[arg(long)]
+    json: bool,
     /// No progress on stderr.
     #[arg(short, long)]
     quiet: bool,
@@ -62,22 +65,36 @@ pub(super) fn certify(arguments: &Arguments) -> Result<(), Failure> {
     let revolution = simulation.mechanism().revolution();
     let certificate = certify::certify(simulation, reference, &mut |_| signals.flow())
         .map_err(|error| signals.failure(error))?;
-    let words = certificate.words(&names, digits, revolution);
+    let case_sha256 = sha256(&case.text);
+    let told =
+        Told { case: &case.name, case_sha256: &case_sha256, names: &names, digits, revolution };
     if let Some(output) = &arguments.output {
         write(&certificate, output, header, arguments.force)?;
     }
-    super::print(format_args!("{}\n{words}", case.name))?;
+    match arguments.json {
+        true => super::print(format_args!("{}\n", certificate.json(&told)))?,
+        false => super::print(format_args!("{}\n{}", case.name, certificate.words(&told)))?,
+    }
     if arguments.digits.is_some() && !certificate.reference_holds_to_the_end(digits) {
-        return Err(Failure::with(1, FellShort { digits }));
+        let (until, held) = (certificate.reference.until, certificate.reference_holds(digits));
+        return Err(Failure::with(1, FellShort { digits, until, held }));
     }
     Ok(())
 }
 
 /// The reference could not be certified as asked.
 #[derive(Debug, thiserror::Error)]
-#[error("the reference cannot be certified to {digits} digits to the end")]
+#[error("the reference cannot be certified to {digits} digits until {until} s, {}", as_far(.held))]
 struct FellShort {
     digits: f64,
+    /// End asked for (s).
+    until: f64,
+    /// Up to when it is (s).
+    held: Option<f64>,
+}
+
+fn as_far(held: &Option<f64>) -> String {
+    held.map_or("nor anywhere".to_owned(), |time| format!("only until {time} s"))
 }
 
 /// The case, sampled on its grid: certificates are told at the same times for every run.

@@ -2,7 +2,7 @@
 
 use super::Failure;
 use super::signals::Signals;
-use crate::compare::{self, Comparison, Map, Request};
+use crate::compare::{self, Comparison, Map, Request, Requirement};
 use crate::run::Progress;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::path::PathBuf;
@@ -23,6 +23,13 @@ pub struct Arguments {
     /// Fail with exit code 1 where fewer digits agree.
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     require_digits: Option<f64>,
+    /// Fail with exit code 1 where samples cover a smaller share (0 to 1) of the time.
+    #[arg(long, value_name = "SHARE", allow_negative_numbers = true)]
+    require_times: Option<f64>,
+    /// Fail with exit code 1 where a smaller share (0 to 1) of the columns that move freely is
+    /// compared.
+    #[arg(long, value_name = "SHARE", allow_negative_numbers = true)]
+    require_columns: Option<f64>,
     /// Look no further than this time (s).
     #[arg(long, value_name = "T", allow_negative_numbers = true)]
     until: Option<f64>,
@@ -42,6 +49,8 @@ pub struct Arguments {
 enum OutOfRange {
     #[error("--require-digits must be greater than 0 and at most {MOST_REQUIRED}, is {0}")]
     Digits(f64),
+    #[error("{0} must be a share greater than 0 and at most 1, is {1}")]
+    Share(&'static str, f64),
     #[error("--until must be a time of 0 s or later, is {0}")]
     Until(f64),
 }
@@ -67,18 +76,37 @@ pub(super) fn compare(arguments: &Arguments) -> Result<(), Failure> {
     let compared = Comparison::new(&arguments.theirs, &arguments.reference, &request, &mut watch);
     bar.finish_and_clear();
     let comparison = compared.map_err(|error| failure(error, &signals))?;
+    let requirement = arguments.requirement();
     match arguments.json {
-        true => super::print(format_args!("{}\n", comparison.json(arguments.require_digits))),
+        true => super::print(format_args!("{}\n", comparison.json(&requirement))),
         false => super::print(&comparison),
     }?;
-    match arguments.require_digits.and_then(|digits| comparison.shortfall(digits)) {
-        None => Ok(()),
-        Some(shortfall) => Err(Failure::with(1, shortfall)),
+    if let Some(shortfall) = comparison.shortfall(&requirement) {
+        return Err(Failure::with(1, shortfall));
     }
+    if requirement.digits.is_some() && comparison.coverage.has_gaps() {
+        super::say(format_args!("warning: it has the digits, but covers {}", comparison.coverage));
+    }
+    Ok(())
 }
 
 impl Arguments {
+    fn requirement(&self) -> Requirement {
+        Requirement {
+            digits: self.require_digits,
+            times: self.require_times,
+            columns: self.require_columns,
+        }
+    }
+
     fn check(&self) -> Result<(), OutOfRange> {
+        for (option, share) in
+            [("--require-times", self.require_times), ("--require-columns", self.require_columns)]
+        {
+            if let Some(share) = share.filter(|share| !(*share > 0.0 && *share <= 1.0)) {
+                return Err(OutOfRange::Share(option, share));
+            }
+        }
         match (self.require_digits, self.until) {
             (Some(digits), _) if !(digits > 0.0 && digits <= MOST_REQUIRED) => {
                 Err(OutOfRange::Digits(digits))

@@ -1,18 +1,20 @@
 //! Making a comparison of two files.
 
+use super::coverage::{Coverage, free_columns};
 use super::event::EventComparison;
 use super::foreign::ForeignTable;
 use super::mapping::{How, Map, Mapped, Mapping};
 use super::quantity::{Column, Parts, Quantity};
 use super::reference::{Reference, Way, index_of, pick};
-use super::scale::Scales;
 use super::series::{Aligned, Certificate, Series};
 use super::source::{Source, Trajectory, case_in};
-use super::{Error, mechanism, note};
+use super::{Error, mechanism, note, scale};
 use crate::case::{Case, Changes};
-use crate::model::{JointDescription, JointKind};
+use crate::digits::{Scales, Sizes};
+use crate::mechanism::Mechanism;
 use crate::record::{self, DATASETS, ResultFile};
 use crate::run::Watcher;
+use crate::simulate::assemble;
 use std::path::{Path, PathBuf};
 
 /// Times that differ by no more than this, relative, are one where files must share their times.
@@ -85,6 +87,8 @@ pub struct Comparison {
     pub scales: Scales,
     /// How the reference came to have values at the times of the other.
     pub way: Way,
+    /// How much of the reference was looked at.
+    pub coverage: Coverage,
     /// Samples of the first file that have no like in the reference, and were left out.
     pub left_out: usize,
     /// Last time asked for (s).
@@ -128,6 +132,10 @@ impl Comparison {
         let pairing = Pairing { theirs: &theirs, reference: &reference, request };
         let Paired { values, way, left_out } = pairing.pair(&scales, &subject.parts, watch)?;
         let certificate = reference.result().map(Certificate::of).transpose()?.flatten();
+        let columns = free_columns(&common, &subject.parts, request.forces, &subject.driven);
+        let until = request.until.unwrap_or(reference.span()[1]);
+        let times = [&values.times[..], &reference.trajectory.times[..]];
+        let coverage = Coverage::new(times, until, columns);
         let foreign = theirs.result().is_none() || reference.result().is_none();
         let series = values.grade(&scales, certificate.as_ref(), foreign);
         let end = values.times.last().copied().unwrap_or_default();
@@ -142,7 +150,7 @@ impl Comparison {
             }
             _ => (None, identity_of(&values)),
         };
-        Ok(Comparison {
+        let mut comparison = Comparison {
             notes: note::notes(&theirs, &reference, &values, &series, &subject.parts),
             theirs: theirs.side(&subject.parts),
             reference: reference.side(&subject.parts),
@@ -150,6 +158,7 @@ impl Comparison {
             columns: common,
             scales,
             way,
+            coverage,
             left_out,
             until: request.until,
             series,
@@ -158,7 +167,9 @@ impl Comparison {
             last_wanted: wanted.checked_sub(1).map_or(f64::INFINITY, |index| known[index]),
             values,
             certificate,
-        })
+        };
+        comparison.notes.extend(comparison.coverage_note());
+        Ok(comparison)
     }
 
     /// Name of a column, by its index in [`columns`](Comparison::columns).
@@ -179,6 +190,9 @@ impl Comparison {
 struct Subject {
     parts: Parts,
     case: Case,
+    sizes: Sizes,
+    /// Of each body whether drives prescribe its motion.
+    driven: Vec<bool>,
 }
 
 impl Subject {
@@ -186,10 +200,15 @@ impl Subject {
     /// Neither file is a result, or they are of two mechanisms.
     fn of(files: &[Source; 2]) -> Result<Subject, Error> {
         let read = |file: &ResultFile| -> Result<Subject, Error> {
-            let subject =
-                Subject { parts: Parts::of(file), case: case_in(file, &Changes::default())? };
-            if subject.radial().len() == subject.parts.0.clearances.len() {
-                return Ok(subject);
+            let (parts, case) = (Parts::of(file), case_in(file, &Changes::default())?);
+            let mechanism: Mechanism<f64> = assemble(&case).map_err(|source| Error::Case {
+                path: file.path().to_owned(),
+                source: Box::new(source),
+            })?;
+            let driven: Vec<bool> =
+                (0..parts.0.bodies.len()).map(|body| mechanism.is_driven(body)).collect();
+            if mechanism.model().names().clearances == parts.0.clearances {
+                return Ok(Subject { parts, case, sizes: Sizes::of(&mechanism), driven });
             }
             let what = "its case has other clearances than it names".to_owned();
             Err(record::Error::Damaged { path: file.path().to_owned(), what }.into())
@@ -215,22 +234,12 @@ impl Subject {
         }
     }
 
-    /// Radial clearances (m).
-    fn radial(&self) -> Vec<f64> {
-        let radial = |joint: &JointDescription| match &joint.kind {
-            JointKind::Revolute { clearance } => {
-                clearance.as_ref().map(|clearance| clearance.radial.to_f64())
-            }
-        };
-        self.case.description.joints.iter().filter_map(radial).collect()
-    }
-
     /// The scales that a reference gives.
     fn scales(&self, reference: &Read<'_>) -> Scales {
         let Trajectory { columns, values, .. } = &reference.trajectory;
-        let scales = Scales::measure(columns, values, self.radial());
+        let scales = scale::measure(columns, values, &self.sizes);
         match reference.result() {
-            Some(file) => scales.with_those_of(file),
+            Some(file) => scale::carried(scales, file),
             None => scales,
         }
     }

@@ -213,6 +213,15 @@ pub enum Error {
         /// What theirs are near to, a line each.
         hints: String,
     },
+    /// A certified reference is not what was certified.
+    #[error(
+        "{} was changed after it was certified: its contents are not those that its seal, the \
+         attribute certificate_sha256, is of", path.display()
+    )]
+    BrokenSeal {
+        /// The reference.
+        path: PathBuf,
+    },
     /// Neither file says which mechanism it is of.
     #[error("neither {} nor {} is a freeplay result: one must say which mechanism it is", theirs.display(), reference.display())]
     NoMechanism {

@@ -1,15 +1,9 @@
-//! Events and contacts, matched one to one.
-//!
-//! An event of the reference is matched with the nearest of the same kind in the same clearance,
-//! but none farther away than half the distance to the reference's next such event on either side:
-//! so no event can be taken for its neighbour.
+//! Events and contacts, matched one to one by the rule of [`digits`](crate::digits).
 
 use super::Error;
+use crate::digits::{self, Likes};
 use crate::record::ResultFile;
 use crate::run::{Contact, Event, EventKind};
-
-/// Widest window of a match, over the time compared.
-const WIDEST: f64 = 0.05;
 
 /// Kinds of event, with the names they have in result files.
 pub const KINDS: [(EventKind, &str); 4] = [
@@ -99,7 +93,8 @@ impl EventComparison {
         reference: &ResultFile,
         until: f64,
     ) -> Result<EventComparison, Error> {
-        let rows = rows(&theirs.events()?, &reference.events()?, theirs.clearances().len(), until);
+        let (theirs_events, reference_events) = (theirs.events()?, reference.events()?);
+        let rows = rows(&theirs_events, &reference_events, theirs.clearances().len(), until);
         let contacts = contacts(&theirs.contacts()?, &reference.contacts()?, &rows);
         Ok(EventComparison { rows, contacts })
     }
@@ -118,75 +113,48 @@ impl EventComparison {
     }
 }
 
+/// Events up to a time (s), by clearance and kind.
 fn rows(theirs: &[Event], reference: &[Event], clearances: usize, until: f64) -> Vec<EventRow> {
-    let mut rows = Vec::new();
-    for clearance in 0..clearances {
-        for (kind, name) in KINDS {
-            let of = |events: &[Event]| -> Vec<Event> {
-                let wanted = |e: &&Event| e.clearance == clearance && e.kind == kind;
-                events.iter().filter(wanted).copied().collect()
-            };
-            let (theirs, reference) = (of(theirs), of(reference));
-            let row = row(clearance, name, &theirs, &reference, until);
-            if !(row.pairs.is_empty()
-                && row.only_theirs.is_empty()
-                && row.only_reference.is_empty())
-            {
-                rows.push(row);
-            }
-        }
-    }
-    rows
+    let likes = digits::events(theirs, reference, until);
+    let sorts = (0..clearances).flat_map(|k| KINDS.map(|(kind, name)| (k, kind, name)));
+    let rows = sorts.map(|(clearance, kind, name)| {
+        let is = |event: &Event| event.clearance == clearance && event.kind == kind;
+        row(&likes, theirs, reference, until, is, (clearance, name))
+    });
+    let holds = |row: &EventRow| {
+        !(row.pairs.is_empty() && row.only_theirs.is_empty() && row.only_reference.is_empty())
+    };
+    rows.filter(holds).collect()
 }
 
-/// Matches events of one kind in one clearance.
+/// The events of one kind in one clearance, told by `is`.
 fn row(
-    clearance: usize,
-    kind: &'static str,
+    likes: &Likes,
     theirs: &[Event],
     reference: &[Event],
     until: f64,
+    is: impl Fn(&Event) -> bool,
+    (clearance, kind): (usize, &'static str),
 ) -> EventRow {
-    let mut row = EventRow {
+    let times = |events: &[Event], which: &[usize]| -> Vec<f64> {
+        which.iter().map(|k| events[*k]).filter(&is).map(|event| event.time).collect()
+    };
+    let pairs = reference.iter().zip(&likes.of_reference).filter_map(|(event, like)| {
+        let other = theirs[(*like)?];
+        let counts = is(event) && event.time <= until;
+        counts.then_some(Pair {
+            time: event.time,
+            theirs: other.time,
+            faster: other.rate - event.rate,
+        })
+    });
+    EventRow {
         clearance,
         kind,
-        pairs: Vec::new(),
-        only_theirs: Vec::new(),
-        only_reference: Vec::new(),
-    };
-    let mut taken = vec![false; theirs.len()];
-    for (k, event) in reference.iter().enumerate() {
-        let window = window(reference, k, WIDEST * until);
-        let first = theirs.partition_point(|other| other.time < event.time - window);
-        let near = (first..theirs.len())
-            .take_while(|other| theirs[*other].time <= event.time + window)
-            .filter(|other| !taken[*other]);
-        let distance = |other: &usize| (theirs[*other].time - event.time).abs();
-        match near.min_by(|a, b| distance(a).total_cmp(&distance(b))) {
-            Some(index) => {
-                taken[index] = true;
-                let Event { time, rate, .. } = theirs[index];
-                if event.time <= until {
-                    let faster = rate - event.rate;
-                    row.pairs.push(Pair { time: event.time, theirs: time, faster });
-                }
-            }
-            None if event.time <= until => row.only_reference.push(event.time),
-            None => {}
-        }
+        pairs: pairs.collect(),
+        only_theirs: times(theirs, &likes.only_theirs),
+        only_reference: times(reference, &likes.only_reference),
     }
-    let left = theirs.iter().zip(&taken).filter(|(event, taken)| !**taken && event.time <= until);
-    row.only_theirs = left.map(|(event, _)| event.time).collect();
-    row
-}
-
-/// Half the distance to the next event on either side, at most `widest` (s). Events at one time
-/// still have a window, in which only their like at that very time fits.
-fn window(events: &[Event], k: usize, widest: f64) -> f64 {
-    let gap = |a: usize, b: usize| events[b].time - events[a].time;
-    let before = if k > 0 { gap(k - 1, k) } else { f64::INFINITY };
-    let after = if k + 1 < events.len() { gap(k, k + 1) } else { f64::INFINITY };
-    (0.5 * before.min(after)).min(widest).max(f64::EPSILON * events[k].time)
 }
 
 /// Contacts whose begins were matched.
@@ -224,47 +192,15 @@ mod tests {
         times.iter().map(|time| Event { time: *time, clearance: 0, kind, rate: *time }).collect()
     }
 
-    fn row_of(theirs: &[f64], reference: &[f64]) -> EventRow {
-        row(0, "contact_begins", &events(theirs), &events(reference), 10.0)
-    }
-
-    fn pairs(row: &EventRow) -> Vec<(f64, f64)> {
-        row.pairs.iter().map(|pair| (pair.time, pair.theirs)).collect()
-    }
-
     #[test]
-    fn events_that_moved_a_little_are_matched_in_order() {
-        let row = row_of(&[1.1, 1.9, 3.2], &[1.0, 2.0, 3.0]);
-        assert_eq!(pairs(&row), [(1.0, 1.1), (2.0, 1.9), (3.0, 3.2)]);
-        assert!(row.only_theirs.is_empty() && row.only_reference.is_empty());
-        assert!((row.pairs[0].faster - 0.1).abs() < 1e-15);
-    }
-
-    #[test]
-    fn events_that_one_of_them_lacks_are_told_and_shift_no_others() {
-        let row = row_of(&[1.0, 2.0, 2.4, 3.0, 5.0], &[1.0, 2.0, 3.0, 4.0, 5.0]);
-        assert_eq!(pairs(&row), [(1.0, 1.0), (2.0, 2.0), (3.0, 3.0), (5.0, 5.0)]);
-        assert_eq!((row.only_theirs, row.only_reference), (vec![2.4], vec![4.0]));
-    }
-
-    #[test]
-    fn an_event_farther_away_than_half_the_distance_to_its_neighbour_is_another_one() {
-        let row = row_of(&[1.06], &[1.0, 1.1]);
-        assert_eq!(pairs(&row), [(1.1, 1.06)]);
-        assert_eq!(row.only_reference, [1.0]);
-    }
-
-    #[test]
-    fn an_event_alone_is_not_matched_across_the_whole_run() {
-        let row = row_of(&[9.0], &[1.0]);
-        assert_eq!((row.only_theirs, row.only_reference), (vec![9.0], vec![1.0]));
-    }
-
-    #[test]
-    fn events_behind_the_end_are_left_out_but_match() {
-        // the reference has its last event just behind the end, the other just before
-        let row = row_of(&[9.99, 12.0], &[10.01]);
-        assert!(row.pairs.is_empty() && row.only_theirs.is_empty());
+    fn pairs_tell_times_and_rates_and_what_is_alone_is_told_beside_them() {
+        let rows = rows(&events(&[1.0, 2.01, 2.4]), &events(&[1.0, 2.0, 4.0]), 1, 10.0);
+        let [row] = &rows[..] else { panic!("{rows:?}") };
+        assert_eq!((row.clearance, row.kind), (0, "contact_begins"));
+        assert_eq!(row.pairs[1].theirs, 2.01);
+        assert!((row.pairs[1].later() - 0.01).abs() < 1e-15);
+        assert!((row.pairs[1].faster - 0.01).abs() < 1e-15);
+        assert_eq!((&row.only_theirs[..], &row.only_reference[..]), (&[2.4][..], &[4.0][..]));
     }
 
     #[test]

@@ -2,18 +2,18 @@
 
 use super::comparison::{Comparison, Identity, MappedName, Side};
 use super::event::{ContactPair, EventComparison, EventRow, Pair};
-use super::grade::{Grade, Hold};
 use super::mapping::How;
 use super::quantity::Quantity;
 use super::reference::Way;
 use super::series::QuantityGrades;
-use super::shortfall::Shortfall;
+use super::shortfall::{Requirement, Shortfall};
 use super::told::HELD;
+use crate::digits::{Grade, Hold};
 use serde_json::{Value, json};
 
 impl Comparison {
-    /// The whole comparison; `required` are the digits asked for, with where they fall short.
-    pub fn json(&self, required: Option<f64>) -> Value {
+    /// The whole comparison; `required` is what was asked for, with where it falls short.
+    pub fn json(&self, required: &Requirement) -> Value {
         let series = &self.series;
         let (way, checked) = match self.way {
             Way::Stored => ("stored", None),
@@ -39,10 +39,18 @@ impl Comparison {
             "times": series.times,
             "events": self.events.as_ref().map(|events| self.events(events)),
             "notes": self.notes,
-            "requirement": required.map(|digits| {
-                let shortfall = self.shortfall(digits);
+            "coverage": json!({
+                "time": self.coverage.time,
+                "gap": self.coverage.gap,
+                "columns": self.coverage.columns,
+                "of_columns": self.coverage.of_columns,
+            }),
+            "requirement": required.is_some().then(|| {
+                let shortfall = self.shortfall(required);
                 json!({
-                    "digits": digits,
+                    "digits": required.digits,
+                    "times": required.times,
+                    "columns": required.columns,
                     "met": shortfall.is_none(),
                     "shortfall": shortfall.as_ref().map(Shortfall::to_string),
                 })
@@ -85,7 +93,7 @@ impl Comparison {
             .columns
             .iter()
             .map(|index| {
-                let scale = self.scales.of(&self.columns[*index]);
+                let scale = self.scales.of_column(&self.columns[*index]);
                 json!({ "name": self.column_name(*index), "scale": scale })
             })
             .collect();

@@ -4,10 +4,10 @@
 //! another program's table; one of them must be a result, for it says which mechanism it is.
 
 mod comparison;
+mod coverage;
 mod error;
 mod event;
 mod foreign;
-mod grade;
 mod json;
 mod mapping;
 mod mechanism;
@@ -22,12 +22,11 @@ mod told;
 mod unit;
 
 pub use comparison::{Comparison, Identity, MappedName, Request, Side};
+pub use coverage::Coverage;
 pub use error::Error;
 pub use event::{ContactPair, EventComparison, EventRow, Pair, Unmatched};
-pub use grade::{Grade, Hold};
 pub use mapping::{How, Map, NotAMap};
 pub use quantity::{Column, Part, Parts, Quantity};
 pub use reference::Way;
-pub use scale::Scales;
 pub use series::{Certificate, QuantityGrades, Series};
-pub use shortfall::Shortfall;
+pub use shortfall::{Requirement, Shortfall};

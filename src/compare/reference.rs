@@ -10,9 +10,9 @@
 
 use super::Error;
 use super::quantity::{Column, Part, Parts, Quantity};
-use super::scale::Scales;
 use super::source::{Trajectory, case_in};
 use crate::case::Changes;
+use crate::digits::Scales;
 use crate::mechanism::Observation;
 use crate::record::{self, ResultFile};
 use crate::run::{Contact, Event, Peak, Progress, Recorder, Watcher};
@@ -170,7 +170,7 @@ impl Reference<'_> {
         let columns = self.stored.columns.iter().zip(&self.stored.values).zip(again);
         for ((column, stored), again) in columns {
             let (stored, again) = (stored[index], again[row]);
-            let size = stored.abs().max(self.scales.of(column));
+            let size = stored.abs().max(self.scales.of_column(column));
             let places = match column.quantity().map(Quantity::part) {
                 Some(Part::Forces) => LAST_PLACES_OF_FORCES,
                 _ => LAST_PLACES,

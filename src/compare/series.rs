@@ -1,10 +1,10 @@
 //! Digits of agreement over time: by quantity, and the gate, which is the worst of them.
 
 use super::Error;
-use super::grade::{Grade, whole_turns};
 use super::quantity::{Column, Part, Quantity};
-use super::scale::Scales;
-use crate::record::ResultFile;
+use crate::digits::Scales;
+use crate::digits::{Grade, whole_turns};
+use crate::record::{ResultFile, Seal};
 
 /// Digits to which a reference is certified, over its own samples.
 #[derive(Debug, Clone, PartialEq)]
@@ -13,6 +13,8 @@ pub struct Certificate {
     state: Vec<f64>,
     forces: Option<Vec<f64>>,
     torque: Option<Vec<f64>>,
+    /// Whether it is sealed.
+    pub sealed: bool,
 }
 
 impl Certificate {
@@ -20,14 +22,19 @@ impl Certificate {
     /// `reference_digits_torque`; `None` where it has no `reference_digits`.
     ///
     /// # Errors
-    /// What reading meets.
+    /// The file was changed after it was sealed, or what reading meets.
     pub fn of(file: &ResultFile) -> Result<Option<Certificate>, Error> {
         let Some(state) = file.over_time("reference_digits")? else { return Ok(None) };
+        let seal = file.seal()?;
+        if seal == Seal::Broken {
+            return Err(Error::BrokenSeal { path: file.path().to_owned() });
+        }
         Ok(Some(Certificate {
             times: file.times()?,
             state,
             forces: file.over_time("reference_digits_forces")?,
             torque: file.over_time("reference_digits_torque")?,
+            sealed: seal == Seal::Whole,
         }))
     }
 
@@ -131,7 +138,7 @@ impl Aligned {
         let turns = turns && quantity == Quantity::Angle;
         let grade = |row: usize, index: usize| {
             let (theirs, reference) = (self.theirs[index][row], self.reference[index][row]);
-            let scale = scales.of(&self.columns[index]);
+            let scale = scales.of_column(&self.columns[index]);
             match turns {
                 true => Grade::of_angle(theirs, reference, scale, index),
                 false => Grade::new(theirs, reference, scale, index),
@@ -168,7 +175,9 @@ impl Aligned {
 #[cfg(test)]
 mod tests {
     use super::super::quantity::tests::four_bar;
+    use super::super::scale;
     use super::*;
+    use crate::digits::Sizes;
 
     fn certificate() -> Certificate {
         Certificate {
@@ -176,6 +185,7 @@ mod tests {
             state: vec![20.0, 10.0, f64::NAN],
             forces: Some(vec![17.0, 7.0, 3.0]),
             torque: None,
+            sealed: true,
         }
     }
 
@@ -204,8 +214,13 @@ mod tests {
         Aligned { times: vec![0.0, 0.5], columns, theirs, reference }
     }
 
+    fn measured(aligned: &Aligned) -> Scales {
+        let sizes = Sizes { mass: 1.0, length: 1.0, rate: 1.0, clearances: vec![1e-3] };
+        scale::measure(&aligned.columns, &aligned.reference, &sizes)
+    }
+
     fn gate(aligned: &Aligned, certificate: Option<&Certificate>) -> Vec<Grade> {
-        let scales = Scales::measure(&aligned.columns, &aligned.reference, vec![1e-3]);
+        let scales = measured(aligned);
         aligned.grade(&scales, certificate, false).gate
     }
 
@@ -238,7 +253,7 @@ mod tests {
     fn columns_off_by_whole_turns_are_told() {
         let turned =
             aligned(&["angle.crank", "angle.coupler"], "angle.crank", -std::f64::consts::TAU);
-        let scales = Scales::measure(&turned.columns, &turned.reference, vec![1e-3]);
+        let scales = measured(&turned);
         let series = turned.grade(&scales, None, true);
         assert_eq!(series.turned, [0]);
         assert!(series.gate[1].digits > 14.0);

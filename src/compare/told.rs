@@ -2,9 +2,9 @@
 
 use super::comparison::{Comparison, Identity, MappedName, Side};
 use super::event::EventRow;
-use super::grade::{Grade, Hold};
 use super::mapping::How;
 use super::reference::Way;
+use crate::digits::{Grade, Hold};
 use crate::model::in_brackets;
 use crate::post::table;
 use comfy_table::Table;
@@ -64,6 +64,7 @@ impl Display for Comparison {
         )?;
         writeln!(f, "certified  {}", self.certificate_line())?;
         writeln!(f, "compared   {}", self.compared_line())?;
+        writeln!(f, "coverage   {}", self.coverage)?;
         mapping_lines(&self.theirs, f)?;
         mapping_lines(&self.reference, f)?;
         match self.identity {
@@ -92,8 +93,12 @@ impl Display for Comparison {
 
 impl Comparison {
     fn certificate_line(&self) -> String {
+        let sealed = self.certificate.as_ref().is_some_and(|certificate| certificate.sealed);
+        let seal = if sealed { "" } else { "; its certificate is not sealed" };
         match self.certified_digits() {
-            Some(digits) => format!("the reference, to {} digits or more here", floor(digits)),
+            Some(digits) => {
+                format!("the reference, to {} digits or more here{seal}", floor(digits))
+            }
             None => "no; digits are those of agreement, and true as far as the reference is".into(),
         }
     }

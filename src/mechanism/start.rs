@@ -11,7 +11,8 @@
 //! Velocities are one such problem, linear: among the rates that the first three ranks allow, the
 //! start has those nearest to the rates that the case names (nought where it does not). Positions
 //! are found by Newton's method from the rough poses: each step is such a problem, for the change,
-//! and the limit of the steps is the start. Neither knows a small weight or a tolerance, so that it
+//! and the limit of the steps is the start; until they are near it they end on coarse places, so
+//! that no rounding chooses the branch. Neither knows a small weight or a tolerance, so that it
 //! is the same start in every arithmetic, to the last places of each. Where |C| stays above nought
 //! its second derivatives are taken in, without which the steps would gain but a few digits each.
 //!
@@ -34,6 +35,8 @@ const FIRST_STEPS: usize = 2;
 const UNNAMED: f64 = 1e-3;
 /// A step of this size, over the mechanism's length, is on the branch, and taken whole.
 const NEAR: f64 = 1e-3;
+/// Places of coordinates are this far apart, over the mechanism's length, until steps are near: 2⁻²⁶.
+const COARSE: f64 = 1.0 / 67_108_864.0;
 /// Near steps that leave more than this of the one before are none of Newton's.
 const SLOW: f64 = 0.05;
 /// Steps that are not near by then want second derivatives too.
@@ -278,6 +281,9 @@ impl<S: Scalar> Mechanism<S> {
             for (k, x) in q.iter_mut().enumerate() {
                 *x += fraction * change.x[k] * scales[k];
             }
+            if whole > near {
+                self.coarsen(q, fixed);
+            }
             let moved = whole * fraction.to_f64();
             let rounding = S::EPSILON * q.iter().fold(self.length, |l, x| l.max(x.abs().to_f64()));
             let no_gain = moved > 0.9 * solved.left && moved <= 1e3 * rounding * change.condition;
@@ -298,6 +304,18 @@ impl<S: Scalar> Mechanism<S> {
             slow |= (moved <= near && moved > SLOW * last.left) || step >= LATE;
         }
         solved
+    }
+
+    /// Takes what is not fixed to the nearest of coarse places, the same in every arithmetic: far
+    /// from where the mechanism closes steps multiply rounding, and might choose another branch.
+    fn coarsen(&self, q: &mut [S], fixed: &[Fixed<S>]) {
+        for (k, x) in q.iter_mut().enumerate() {
+            let size = if k % 3 == 2 { 1.0 } else { self.length.log2().floor().exp2() };
+            let coarse = COARSE * size;
+            if fixed.iter().all(|fixed| fixed.at != k) && x.is_finite() {
+                *x = S::from_f64((x.to_f64() / coarse).round() * coarse);
+            }
+        }
     }
 
     /// The fraction of a change, of halves, that makes things no worse than they were.

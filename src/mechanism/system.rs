@@ -3,6 +3,7 @@
 use super::Mechanism;
 use super::layout::Role;
 use crate::clearance::{Bodies, Gap};
+use crate::contact::Penetration;
 use crate::dae::{Course, Fault, State, System, Watch};
 use crate::linear::Singular;
 use crate::plane::Vector;
@@ -199,6 +200,25 @@ impl<S: Scalar> Mechanism<S> {
             force_rate: normal.d_depth * rates.rate + normal.d_rate * acceleration,
             slope: normal.d_depth,
         })
+    }
+
+    /// Square of the angular frequency (1/s²) that contact `clearance` swings with at most where it
+    /// is this deep (m): ∂F_N/∂δ (1/m + r²/I), summed over both bodies as if nothing else held them.
+    pub fn swing_squared(&self, clearance: usize, depth: f64) -> f64 {
+        let law = &self.model.clearances()[clearance];
+        let pressed = Penetration {
+            depth: S::from_f64(depth),
+            rate: S::zero(),
+            inverse_impact_rate: S::zero(),
+        };
+        let slope = law.normal.force(pressed).d_depth.to_f64();
+        let pair = &law.pair;
+        let mobility = [(pair.i, pair.s_i), (pair.j, pair.s_j)].map(|(body, arm)| {
+            let Role::Free(at) = self.layout.roles[body] else { return 0.0 };
+            let [translation, rotation] = [at, at + 2].map(|i| self.inverse_masses[i].to_f64());
+            translation + arm.dot(arm).to_f64() * rotation
+        });
+        slope * (mobility[0] + mobility[1])
     }
 
     /// Penetration rate and slip velocity (m/s) of a clearance at the state last evaluated; zero

@@ -2,7 +2,7 @@
 
 use super::dimension_scale::{read_text, write_text};
 use hdf5::Location;
-use hdf5::types::TypeDescriptor;
+use hdf5::types::{TypeDescriptor, VarLenAscii, VarLenUnicode};
 use std::fmt;
 
 /// The value of an attribute.
@@ -30,17 +30,28 @@ impl Attribute {
         }
     }
 
-    /// Reads an attribute; `None` where it is neither one number nor one text.
+    /// Reads an attribute; `None` where it is neither one number nor one text. An array of one, as
+    /// netCDF tools write it, is what it holds.
     pub(super) fn read(location: &Location, name: &str) -> hdf5::Result<Option<Self>> {
         let attribute = location.attr(name)?;
-        if attribute.ndim() != 0 {
+        if attribute.size() != 1 {
             return Ok(None);
         }
         Ok(match attribute.dtype()?.to_descriptor() {
             Ok(TypeDescriptor::Integer(_) | TypeDescriptor::Unsigned(_)) => {
-                Some(Attribute::Integer(attribute.read_scalar()?))
+                attribute.read_raw::<i64>()?.first().copied().map(Attribute::Integer)
             }
-            Ok(TypeDescriptor::Float(_)) => Some(Attribute::Number(attribute.read_scalar()?)),
+            Ok(TypeDescriptor::Float(_)) => {
+                attribute.read_raw::<f64>()?.first().copied().map(Attribute::Number)
+            }
+            Ok(TypeDescriptor::VarLenUnicode) => {
+                let texts = attribute.read_raw::<VarLenUnicode>()?;
+                texts.first().map(|text| Attribute::from(text.as_str()))
+            }
+            Ok(TypeDescriptor::VarLenAscii) => {
+                let texts = attribute.read_raw::<VarLenAscii>()?;
+                texts.first().map(|text| Attribute::from(text.as_str()))
+            }
             _ => read_text(&attribute)?.map(Attribute::Text),
         })
     }

@@ -12,6 +12,7 @@ mod overview;
 mod publish;
 mod reader;
 mod schema;
+mod seal;
 mod store;
 mod writer;
 
@@ -22,4 +23,5 @@ pub use overview::Overview;
 pub(crate) use publish::Draft;
 pub use reader::{ResultFile, Table};
 pub use schema::{DATASETS, Dataset, Dimension, SCHEMA_VERSION, Source, Values, column_name};
+pub use seal::{Seal, sha256};
 pub use writer::Writer;

@@ -421,7 +421,12 @@ impl ResultFile {
         Error::Damaged { path: self.path.clone(), what }
     }
 
-    fn failed(&self, attempt: &str, error: hdf5::Error) -> Error {
+    /// The open file, for the rest of this room.
+    pub(super) fn handle(&self) -> &File {
+        &self.file
+    }
+
+    pub(super) fn failed(&self, attempt: &str, error: hdf5::Error) -> Error {
         let source = LibraryError::from(error);
         Error::Library { attempt: attempt.to_owned(), path: self.path.clone(), source }
     }

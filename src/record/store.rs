@@ -3,11 +3,11 @@
 use super::dimension_scale::{attach_scale, set_scale};
 use super::header::{Ending, Header, Outcome, Series};
 use super::schema::{DATASETS, Dataset, Dimension, SCHEMA_VERSION, Values};
+use super::seal::{CERTIFICATE, SEAL, seal_of, sha256};
 use super::{Attribute, Error};
 use hdf5::file::{AttrCreationOrder, LibraryVersion, LinkCreationOrder};
 use hdf5::{Extent, File, H5Type, SimpleExtents};
 use ndarray::ArrayView2;
-use sha2::{Digest, Sha256};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
@@ -152,7 +152,7 @@ impl Store {
         write_values(&handle, stored, None, 0..rows, &series.values)
     }
 
-    /// Writes how the run ended and closes the file.
+    /// Writes how the run ended, seals a certificate, and closes the file.
     pub fn close(self, ending: &Ending) -> Result<(), Error> {
         for series in &ending.series {
             self.add(series).map_err(failed(format!("write {} to", series.name), &self.path))?;
@@ -160,6 +160,10 @@ impl Store {
         let Store { handles, scales, file, path, .. } = self;
         drop((handles, scales));
         write_ending(&file, ending).map_err(failed("write the ending of", &path))?;
+        if ending.series.iter().any(|series| series.name == CERTIFICATE) {
+            let sealed = seal_of(&file).and_then(|seal| Attribute::from(seal).write(&file, SEAL));
+            sealed.map_err(failed("seal", &path))?;
+        }
         file.flush().map_err(failed("write", &path))?;
         file.close().map_err(failed("close", &path))
     }
@@ -308,8 +312,6 @@ fn append_rows<T: H5Type>(
 /// Writes the attributes of the root that are known before the run.
 fn write_header(file: &File, header: &Header) -> hdf5::Result<()> {
     let (major, minor, patch) = hdf5::library_version();
-    let sha256: String =
-        Sha256::digest(&header.case_text).iter().map(|byte| format!("{byte:02x}")).collect();
     let own = [
         ("Conventions", Attribute::from("CF-1.11")),
         ("title", Attribute::from(&*header.title)),
@@ -319,7 +321,7 @@ fn write_header(file: &File, header: &Header) -> hdf5::Result<()> {
         ("sundials_version", Attribute::from(&*header.sundials_version)),
         ("case_name", Attribute::from(&*header.name)),
         ("case_toml", Attribute::from(&*header.case_text)),
-        ("case_sha256", Attribute::from(sha256)),
+        ("case_sha256", Attribute::from(sha256(&header.case_text))),
     ];
     for (name, attribute) in own {
         attribute.write(file, name)?;

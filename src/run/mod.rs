@@ -35,7 +35,7 @@ use witness::Witness;
 const DRIFT: f64 = 5e-12;
 /// Off by so many roundings of the largest coordinate is no drift: far from the origin no
 /// projection comes nearer.
-const DRIFT_ROUNDINGS: f64 = 16.0;
+const DRIFT_ROUNDINGS: f64 = 64.0;
 /// Steps between two looks at the drift.
 const DRIFT_EVERY: u64 = 50;
 /// By how much, in units of the tolerance, an event function of order one may be beyond its zero
@@ -211,7 +211,7 @@ where
                 return Err(Error::Contradiction(Contradiction::TimeGoesBack { from, to }));
             }
             self.progress.steps += 1;
-            if S::EPSILON < f64::EPSILON && advance == Advance::Stepped {
+            if S::EPSILON < f64::EPSILON {
                 self.check_modes()?;
             }
             self.follow_contacts()?;
@@ -236,12 +236,15 @@ where
     fn check_modes(&mut self) -> Outcome<(), S, E, R> {
         let now = self.engine.now().clone();
         let time = now.time.to_f64();
+        let fired = self.engine.fired().to_vec();
         let system = self.engine.system();
         let state = State { time: now.time, q: &now.q, v: &now.v, carried: None };
         let mut values = vec![S::zero(); system.watches().len()];
         system.event_values(state, &mut values).map_err(|source| Error::System { time, source })?;
-        let beyond = values.iter().zip(system.watches()).position(|(value, watch)| {
+        let watched = values.iter().zip(system.watches()).zip(fired);
+        let beyond = watched.into_iter().position(|((value, watch), fired)| {
             let off = match watch.direction {
+                _ if fired => 0.0,
                 Direction::Off => 0.0,
                 Direction::Rising => value.to_f64(),
                 Direction::Falling => -value.to_f64(),
@@ -295,9 +298,10 @@ where
         }
         self.scratch.clone_from(self.engine.now());
         let drift = self.project()?;
-        let largest = self.scratch.q.iter().fold(0.0, |q: f64, x| q.max(x.abs().to_f64()));
-        let rounding = DRIFT_ROUNDINGS * S::EPSILON * largest;
-        if drift > rounding.max(DRIFT * self.engine.system().length()) {
+        let (system, q) = (self.engine.system(), &self.scratch.q);
+        let sizes = q.iter().zip(system.scales().0).map(|(q, size)| q.abs().to_f64() / size);
+        let rounding = DRIFT_ROUNDINGS * S::EPSILON * sizes.fold(0.0, f64::max);
+        if drift > rounding.max(DRIFT) * system.length() {
             let state = self.scratch.clone();
             self.restart(&state)?;
             self.segment += 1;

@@ -1,4 +1,8 @@
 //! True extrema of penetration and force within a step.
+//!
+//! A step may hold several: in many digits it may be longer than the contact swings. So it is
+//! looked at in places that no contact can swing far between, and between two of them wherever the
+//! parabola through what is known of the force's rate comes near zero.
 
 use super::recorder::{Peak, Recorder};
 use super::{Mark, Outcome, Run};
@@ -12,6 +16,27 @@ const MOST_LOOKS: usize = 60;
 const TRUSTED_LOOKS: usize = 12;
 /// Accuracy of a look, beyond that of the doubles that are told.
 const GLANCE: f64 = 1e-18;
+/// Angle (rad) by which contacts may swing from one place to the next: two neighbouring extrema
+/// are π apart.
+const SWING: f64 = 2.0;
+/// Places that one step is looked at in.
+const MOST_PLACES: f64 = 1024.0;
+/// Part of the smaller rate at two places that the rate between them must keep, or else is looked at.
+const KEPT: f64 = 0.25;
+/// Halvings of the stretch between two places.
+const MOST_HALVINGS: usize = 6;
+
+/// What a contact is at a time (s).
+type Place<S> = (S, ContactRates<S>);
+
+/// Every clearance at a time (s) within a step; `None` in flight.
+type Look<S> = (S, Vec<Option<ContactRates<S>>>);
+
+/// Whether the force rises. Where its rate is zero because the penetration is, the penetration tells.
+fn rises<S: Scalar>(at: &ContactRates<S>) -> bool {
+    let zero = S::zero();
+    at.force_rate > zero || (at.force_rate == zero && at.depth <= zero && at.rate > zero)
+}
 
 impl<S, E, R> Run<'_, S, E, R>
 where
@@ -23,30 +48,98 @@ where
     /// Marks what adaptive sampling must not miss.
     pub(super) fn follow_contacts(&mut self) -> Outcome<(), S, E, R> {
         self.marks.clear();
+        if self.touching.iter().all(Option::is_none) {
+            return Ok(());
+        }
         // all ends first: a look inside the step moves the system away from them
         let ends: Vec<Option<ContactRates<S>>> =
             (0..self.touching.len()).map(|k| self.engine.system().contact_rates(k)).collect();
+        let inside = self.look_inside(&ends)?;
         for (k, end) in ends.into_iter().enumerate() {
             let Some((begin, end)) = self.touching[k].as_ref().map(|t| t.last).zip(end) else {
                 continue;
             };
-            if begin.rate > S::zero() && end.rate <= S::zero() {
-                let (_, rates) = self.summit(k, begin, end, |at| (at.depth, at.rate))?;
-                self.deepest(k, rates.depth);
+            let mut last = (self.engine.began(), begin);
+            for (time, rates) in &inside {
+                if let Some(rates) = rates[k] {
+                    self.follow(k, last, (*time, rates), MOST_HALVINGS)?;
+                    last = (*time, rates);
+                }
             }
-            if begin.force_rate > S::zero() && end.force_rate <= S::zero() {
-                let (time, rates) = self.summit(k, begin, end, |at| (at.force, at.force_rate))?;
-                self.strongest(k, time.to_f64(), rates.force.to_f64());
-                self.marks.push(Mark { time, peak: Some((k, rates.force.to_f64())) });
-            }
+            self.follow(k, last, (self.engine.now().time, end), MOST_HALVINGS)?;
             self.mark_bend(&begin, &end);
-            self.deepest(k, end.depth);
-            let noise = self.noise(end.slope.to_f64());
             if let Some(touching) = self.touching[k].as_mut() {
                 touching.last = end;
-                touching.pulled |= end.force < S::zero();
-                self.peaks.extend(touching.follow(end.force.to_f64(), noise));
             }
+        }
+        Ok(())
+    }
+
+    /// Every contact at places within the last step that none of them can swing far between; none
+    /// where it cannot swing far over the whole.
+    fn look_inside(&mut self, ends: &[Option<ContactRates<S>>]) -> Outcome<Vec<Look<S>>, S, E, R> {
+        let (from, to) = (self.engine.began(), self.engine.now().time);
+        let length = (to - from).to_f64();
+        let mut squares = 0.0;
+        for (k, end) in ends.iter().enumerate() {
+            if let Some((begin, end)) = self.touching[k].as_ref().map(|t| t.last).zip(*end) {
+                let depth = deepest_between(&begin, &end, length);
+                squares += self.engine.system().swing_squared(k, depth);
+            }
+        }
+        let mut inside = Vec::new();
+        if length * length * squares <= SWING * SWING {
+            return Ok(inside);
+        }
+        let parts = (length * squares.sqrt() / SWING).ceil().min(MOST_PLACES);
+        let mut last = from;
+        for part in 1..parts as u32 {
+            let aim = from + (to - from) * S::from_f64(f64::from(part) / parts);
+            if aim > last {
+                last = self.glance(aim, last, to)?;
+                let system = self.engine.system();
+                inside.push((last, (0..ends.len()).map(|k| system.contact_rates(k)).collect()));
+            }
+        }
+        Ok(inside)
+    }
+
+    /// Follows a contact from one place to another within the last step.
+    fn follow(
+        &mut self,
+        k: usize,
+        begin: Place<S>,
+        end: Place<S>,
+        halvings: usize,
+    ) -> Outcome<(), S, E, R> {
+        let noise = self.noise(end.1.slope.to_f64());
+        if halvings > 0 && may_turn_twice(&begin, &end, noise) {
+            let middle = begin.0 + (end.0 - begin.0) * S::from_f64(0.5);
+            if middle > begin.0 && middle < end.0 {
+                let time = self.glance(middle, begin.0, end.0)?;
+                if let Some(rates) = self.engine.system().contact_rates(k) {
+                    self.follow(k, begin, (time, rates), halvings - 1)?;
+                    return self.follow(k, (time, rates), end, halvings - 1);
+                }
+            }
+        }
+        if begin.1.rate > S::zero() && end.1.rate <= S::zero() {
+            let (_, rates) = self.summit(k, begin, end, |at| (at.depth, at.rate))?;
+            self.deepest(k, rates.depth);
+        }
+        if rises(&begin.1) && !rises(&end.1) {
+            let (time, rates) = self.summit(k, begin, end, |at| (at.force, at.force_rate))?;
+            self.strongest(k, time.to_f64(), rates.force.to_f64());
+            self.marks.push(Mark { time, peak: Some((k, rates.force.to_f64())) });
+        }
+        let (time, end) = end;
+        self.deepest(k, end.depth);
+        if rises(&end) {
+            self.so_far(k, time.to_f64(), end.force.to_f64());
+        }
+        if let Some(touching) = self.touching[k].as_mut() {
+            touching.pulled |= end.force < S::zero();
+            self.peaks.extend(touching.follow(end.force.to_f64(), noise));
         }
         Ok(())
     }
@@ -61,24 +154,29 @@ where
     fn strongest(&mut self, k: usize, time: f64, force: f64) {
         let Some(touching) = self.touching[k].as_mut() else { return };
         touching.maximum(Peak { time, clearance: k, force });
-        if let Some(contact) = self.contacts.get(touching.number)
+        self.so_far(k, time, force);
+    }
+
+    /// The largest force of a contact so far, which may yet rise.
+    fn so_far(&mut self, k: usize, time: f64, force: f64) {
+        let number = self.touching[k].as_ref().map(|touching| touching.number);
+        if let Some(contact) = number.and_then(|number| self.contacts.get(number))
             && force > contact.peak_force
         {
             (contact.peak_force, contact.peak_time) = (force, time);
         }
     }
 
-    /// The time (s) within the last step at which a quantity of contact `k` is largest, and what
+    /// The time (s) between two places at which a quantity of contact `k` is largest, and what
     /// the contact is there: the zero of its rate by Muller's iteration, kept in a bracket.
     /// `of` gives the quantity and its rate.
     fn summit(
         &mut self,
         k: usize,
-        begin: ContactRates<S>,
-        end: ContactRates<S>,
+        (mut left, begin): Place<S>,
+        (mut right, end): Place<S>,
         of: impl Fn(&ContactRates<S>) -> (S, S),
-    ) -> Outcome<(S, ContactRates<S>), S, E, R> {
-        let (mut left, mut right) = (self.engine.began(), self.engine.now().time);
+    ) -> Outcome<Place<S>, S, E, R> {
         let mut found = (right, end);
         // a summit is flat: what is this near to it is as high, and Muller's next place is far
         // nearer still
@@ -122,6 +220,30 @@ where
     }
 }
 
+/// How deep (m) a contact may be between two places that are so far apart (s).
+fn deepest_between<S: Scalar>(begin: &ContactRates<S>, end: &ContactRates<S>, length: f64) -> f64 {
+    let reach = |at: &ContactRates<S>| at.depth.to_f64() + at.rate.to_f64().abs() * length;
+    let ends = begin.depth.to_f64().max(end.depth.to_f64());
+    reach(begin).min(reach(end)).max(ends).max(0.0)
+}
+
+/// Whether a force that rises, or falls, at two places may do the other between them, by more than
+/// `noise` (N): its rate is taken for the parabola that has its values there, and its mean.
+fn may_turn_twice<S: Scalar>(begin: &Place<S>, end: &Place<S>, noise: f64) -> bool {
+    let rising = rises(&begin.1);
+    if rising != rises(&end.1) {
+        return false;
+    }
+    let sign = if rising { 1.0 } else { -1.0 };
+    let length = (end.0 - begin.0).to_f64();
+    let rates = [begin, end].map(|(_, at)| sign * at.force_rate.to_f64());
+    let change = sign * (end.1.force - begin.1.force).to_f64();
+    let middle = (6.0 * change / length - rates[0] - rates[1]) / 4.0;
+    let least = rates[0].min(rates[1]).max(0.0);
+    let matters = (rates[0].max(rates[1]).max(-middle)) * length > noise;
+    matters && middle < KEPT * least
+}
+
 /// Where between 0 and `width` the cubic with these values and rates at its ends is largest; the
 /// first rate is above zero, the last is not.
 fn summit_between<S: Scalar>(width: S, values: [S; 2], rates: [S; 2]) -> S {
@@ -150,6 +272,36 @@ fn muller<S: Scalar>([a, b, c]: [(S, S); 3]) -> S {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// A contact whose force is 1 + s³ − a s over the time s (s), at a time.
+    fn cubic_place(s: f64, a: f64) -> Place<f64> {
+        let (force, force_rate) = (1.0 + s * s * s - a * s, 3.0 * s * s - a);
+        (s, ContactRates { depth: 1.0, rate: 0.0, force, force_rate, slope: 1.0 })
+    }
+
+    #[test]
+    fn a_force_that_falls_and_rises_again_between_two_places_is_seen() {
+        let may =
+            |a: f64, noise: f64| may_turn_twice(&cubic_place(-1.0, a), &cubic_place(1.0, a), noise);
+        assert!(may(0.1, 0.0), "two extrema");
+        assert!(may(-0.01, 0.0), "nearly two");
+        assert!(!may(-2.0, 0.0), "none");
+        assert!(!may(0.1, 10.0), "a ripple");
+        let falls = may_turn_twice(&cubic_place(-0.1, 1.0), &cubic_place(0.1, 1.0), 0.0);
+        assert!(!falls, "falling all the time");
+    }
+
+    #[test]
+    fn a_contact_that_begins_rises_though_its_force_has_no_rate() {
+        let at = |depth: f64, rate: f64| ContactRates {
+            depth,
+            rate,
+            force: 0.0,
+            force_rate: 0.0,
+            slope: 0.0,
+        };
+        assert!(rises(&at(0.0, 1.0)) && !rises(&at(0.0, -1.0)) && !rises(&at(1e-6, 1.0)));
+    }
 
     #[test]
     fn the_first_look_is_exact_for_cubics() {

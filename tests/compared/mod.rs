@@ -1,5 +1,7 @@
 //! Runs the program in a folder of its own, and makes the files that it is given.
 
+#![allow(dead_code, reason = "each file of tests uses its own part")]
+
 use hdf5::File;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -68,6 +70,27 @@ impl Trial {
         outcome(command)
     }
 
+    /// Runs a shipped case with changes, and has the other engine check it.
+    pub fn checked(&self, case: &str, set: &[&str]) -> Outcome {
+        let cases = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases");
+        let mut command = program();
+        command.arg("run").arg(cases.join(format!("{case}.toml"))).args(["--quiet", "--check"]);
+        command.arg("-o").arg(self.path("checked.h5"));
+        for set in set {
+            command.args(["--set", set]);
+        }
+        outcome(command)
+    }
+
+    /// Runs `freeplay certify` on a shipped case.
+    pub fn certify(&self, case: &str, arguments: &[&str]) -> Outcome {
+        let cases = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases");
+        let mut command = program();
+        command.arg("certify").arg(cases.join(format!("{case}.toml"))).arg("--quiet");
+        command.args(arguments).current_dir(self.folder());
+        outcome(command)
+    }
+
     /// The JSON of a comparison, which need not meet what it requires.
     pub fn json(&self, theirs: &Path, reference: &Path, more: &[&str]) -> serde_json::Value {
         let outcome = self.compare(theirs, reference, &[&["--json"], more].concat());
@@ -109,6 +132,11 @@ pub fn add(path: &Path, name: &str, values: &[f64]) {
 pub fn add_attribute(path: &Path, name: &str, value: f64) {
     let file = File::open_rw(path).unwrap();
     file.new_attr::<f64>().create(name).unwrap().write_scalar(&value).unwrap();
+}
+
+/// Takes an attribute from the root.
+pub fn remove_attribute(path: &Path, name: &str) {
+    File::open_rw(path).unwrap().delete_attr(name).unwrap();
 }
 
 /// Writes a vector `t` and a matrix `y` as MATLAB's `save -v7.3` does: behind a block of 512 bytes

@@ -73,6 +73,16 @@ pub enum ExplicitError {
         /// Steps that are left at that pace.
         steps: f64,
     },
+    /// No bound tells whether a step holds an event.
+    #[error(
+        "it cannot be proven that the step from t = {time:e} s holds no event of function {function}"
+    )]
+    Unproven {
+        /// Begin of the step (s).
+        time: f64,
+        /// Index of the event function.
+        function: usize,
+    },
     /// An event, or a time within a step, was not met by repeated steps.
     #[error("the explicit engine cannot land on {target} within the step from t = {time:e} s")]
     Landing {

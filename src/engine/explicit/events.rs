@@ -15,6 +15,8 @@ const TRUSTED_STEPS: usize = 12;
 const FIRST_ACCURACY: f64 = 1e-8;
 /// What the last correction of a landing may leave, in units of the tolerance.
 const LEFT: f64 = 0.1;
+/// The same for an event, at the most.
+const MET: f64 = 1e-12;
 /// Change of a landing's length, as a fraction of the step, from which on partial steps become
 /// more accurate.
 const CLOSE: f64 = 1e-2;
@@ -291,6 +293,10 @@ impl<S: Scalar, Y: System<S>> Explicit<S, Y> {
         }
         match first_rise(begin, end, |at| self.look(k, at))? {
             Found::Nothing => Ok(None),
+            // what is to be called true is to be proven
+            Found::Unproven if S::EPSILON < f64::EPSILON => {
+                Err(ExplicitError::Unproven { time: self.step_begin(), function: k })
+            }
             Found::Unproven => {
                 self.tally.unproven += 1;
                 Ok(None)
@@ -357,10 +363,22 @@ impl<S: Scalar, Y: System<S>> Explicit<S, Y> {
     fn approach_at_probe(&mut self, k: usize) -> Result<(S, S), ExplicitError> {
         let time = self.step_begin();
         let fault = |source| ExplicitError::System { time, source };
+        self.evaluate_probe().map_err(fault)?;
+        let rate = self.flow.approach_rate(k);
         let probe = &mut self.probe;
         self.flow.approaches(&probe.y, &mut probe.approaches).map_err(fault)?;
-        self.flow.evaluate(&probe.y).map_err(fault)?;
-        Ok((probe.approaches[k], self.flow.approach_rate(k)))
+        Ok((probe.approaches[k], rate))
+    }
+
+    /// Evaluates the system where the last partial step led. Cosines and sines are those of the
+    /// angles, as whoever looks at the state will have them: those carried along are off by the
+    /// tolerance.
+    fn evaluate_probe(&mut self) -> Result<(), Fault> {
+        let probe = &mut self.probe;
+        self.flow.reset_turns(&mut probe.y);
+        let turns = self.flow.first_turn()..self.flow.first_offset();
+        probe.low[turns].fill(S::zero());
+        self.flow.evaluate(&probe.y)
     }
 
     /// What is left to the target where the last partial step led, and its rate; takes the rates
@@ -393,6 +411,12 @@ impl<S: Scalar, Y: System<S>> Explicit<S, Y> {
         // a method of one order takes no cheaper partial steps
         let adapts = matches!(self.stepper, Stepper::Extrapolation(_));
         let roughest = if adapts { FIRST_ACCURACY.max(tolerance) } else { tolerance };
+        // an event is met to the rounding of doubles however loose the tolerance: samples before it
+        // must not see it
+        let left = match target {
+            Target::Event(_) => LEFT * tolerance.min(MET),
+            Target::Time(_) => LEFT * tolerance,
+        };
         let [mut low, mut high] = bracket;
         let half = S::from_f64(0.5);
         let mut at = Iterate { place: guess.max(low).min(high), accuracy: roughest };
@@ -403,7 +427,7 @@ impl<S: Scalar, Y: System<S>> Explicit<S, Y> {
             let change = -(miss / rate);
             let aim = at.place + change;
             let size = change.to_f64().abs() / span;
-            let done = size * size * at.doubt(last, span) <= LEFT * tolerance;
+            let done = size * size * at.doubt(last, span) <= left;
             let inside = aim >= bracket[0] && aim <= bracket[1];
             if at.accuracy == tolerance && done && inside {
                 return Ok(self.correct(at.place, last, miss, rate));

@@ -80,10 +80,11 @@ pub(super) struct Flow<S, Y> {
 }
 
 impl<S: Scalar, Y: System<S>> Flow<S, Y> {
-    /// A flow without roots. Numbers of many digits need no offsets carried.
-    pub fn new(system: Y) -> Self {
+    /// A flow without roots, that carries offsets if it is to be `exact`. Numbers of many digits
+    /// need none, and errors of the tolerance are not to part them from the coordinates.
+    pub fn new(system: Y, exact: bool) -> Self {
         let (frames, functions) = (system.turns(), system.watches().len());
-        let offsets = if S::EPSILON >= f64::EPSILON { system.offsets() } else { 0 };
+        let offsets = if exact && S::EPSILON >= f64::EPSILON { system.offsets() } else { 0 };
         let turn = Turn { cos: S::one(), sin: S::zero() };
         Flow {
             coordinates: system.coordinates(),

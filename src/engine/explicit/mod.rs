@@ -48,6 +48,10 @@ use stepper::{Norm, Point, Stepper};
 /// Attempts at one step, and steps at one time, after which the engine gives up.
 const PATIENCE: u32 = 100;
 
+/// Up to this tolerance partial steps from either end of a step lead to the same places as far as
+/// anybody sees; beyond, all are taken from its begin.
+const TIGHT: f64 = 1e-10;
+
 /// Steps between two looks at how far the simulation has come, ...
 const STRETCH: u64 = 100_000;
 /// ... and steps to the end, at the pace of the last stretch, from which on it is hopeless.
@@ -147,7 +151,7 @@ impl<S: Scalar, Y: System<S>> Explicit<S, Y> {
         if !(options.initial_step > 0.0 && options.max_step > 0.0) {
             return Err(ExplicitError::StepLength);
         }
-        let flow = Flow::new(system);
+        let flow = Flow::new(system, options.tolerance <= TIGHT);
         let (capacity, functions) = (flow.capacity(), flow.gauges().len());
         let coarse = S::EPSILON >= f64::EPSILON;
         let stepper = match options.method {
@@ -581,11 +585,13 @@ impl<S: Scalar, Y: System<S>> Explicit<S, Y> {
         watches.any(|watch| watch.direction != Direction::Off && watch.power <= 0.0)
     }
 
-    /// Partial step to `probe`, which is to lie this far into the step; from its nearer end.
+    /// Partial step to `probe`, which is to lie this far into the step; from its nearer end, or,
+    /// where the tolerance is loose, from its begin.
     fn partial(&mut self, place: S, tolerance: f64) -> Result<(), ExplicitError> {
         self.tally.partial += 1;
         self.evaluated_here = false;
-        let from_end = place + place > self.length && !self.may_be_rough_beyond();
+        let same = self.options.tolerance <= TIGHT;
+        let from_end = same && place + place > self.length && !self.may_be_rough_beyond();
         let (base, length) =
             if from_end { (&self.here, place - self.length) } else { (&self.from, place) };
         self.norm.tolerance = tolerance;

@@ -1,11 +1,12 @@
-//! Events that IDA's own search for roots does not see, because they are over at the step's end.
+//! Events of IDA's steps.
 //!
-//! IDA compares signs at the ends of a step. A step may be long: in free flight the unknowns are
-//! polynomials in time, which BDF follows exactly over many turns of a body. So each step is proven
-//! to hold no event ([`guard`]), or its first event is found on IDA's own interpolant, which is
-//! where IDA finds roots too, and bracketed as closely as IDA does it. The right end of the
-//! bracket is the event's state: it has been crossed, and nothing is polished. Where the search has
-//! to look into a step that turns far, it goes by panels of a radian.
+//! IDA's own search for roots compares signs at the ends of a step, and is not used. A step may be
+//! long: in free flight the unknowns are polynomials in time, which BDF follows exactly over many
+//! turns of a body. A function that is zero at a restart it does not watch at all. So each step is
+//! proven to hold no event ([`guard`]), or its first event is found on IDA's interpolant, and
+//! bracketed as closely as IDA would. The right end of the bracket is the event's state: it has been
+//! crossed, and nothing is polished. Where the search has to look into a step that turns far, it
+//! goes by panels of a radian.
 
 use super::{Error, Ida, ROUNDINGS_AT_END};
 use crate::dae::{Course, Dae, Direction, State};
@@ -28,10 +29,8 @@ pub(super) struct Events {
     passed: Vec<bool>,
     /// When each function rises in the step (s).
     rises: Vec<Option<f64>>,
-    /// Whether IDA found a root of it at the step's end.
-    pub(super) by_ida: Vec<bool>,
-    /// Events found between the ends of a step.
-    pub(super) between: u64,
+    /// Looks at event functions within steps.
+    pub(super) looks: u64,
     /// Searches that no bound settled.
     pub(super) unproven: u64,
 }
@@ -43,8 +42,7 @@ impl Events {
             end: vec![Course::NONE; functions],
             passed: vec![false; functions],
             rises: vec![None; functions],
-            by_ida: vec![false; functions],
-            between: 0,
+            looks: 0,
             unproven: 0,
         }
     }
@@ -82,16 +80,13 @@ impl<Y: Dae> Ida<Y> {
     }
 
     /// The first event within the latest step, at whose end the system stands evaluated: its time
-    /// (s), and in `fired` its functions. Those which IDA found at the end are left to IDA.
+    /// (s), and in `fired` its functions.
     pub(super) fn find_event(&mut self) -> Result<Option<f64>, Error> {
         let (from, to) = (self.began.time, self.now.time);
         let mut doubtful = false;
         for k in 0..self.events.end.len() {
             self.events.rises[k] = None;
-            let Some(mut course) = self.rising_course(k) else { continue };
-            if self.events.by_ida[k] {
-                course.value = course.value.min(0.0);
-            }
+            let Some(course) = self.rising_course(k) else { continue };
             self.events.end[k] = course;
             let [begin, end] = self.ends(k);
             let settled = !self.events.passed[k] && guard::stays_below(begin, end);
@@ -121,8 +116,8 @@ impl<Y: Dae> Ida<Y> {
         Ok(Some(first))
     }
 
-    /// Width (s) of the bracket in which IDA leaves a root.
-    pub(super) fn resolution(&self) -> f64 {
+    /// Width (s) of the bracket in which IDA would leave a root.
+    fn resolution(&self) -> f64 {
         let (from, to) = (self.began.time, self.now.time);
         ROUNDINGS_AT_END * f64::EPSILON * (to.abs() + (to - from))
     }
@@ -192,6 +187,7 @@ impl<Y: Dae> Ida<Y> {
 
     /// What function `k` is at a time (s) within the step.
     fn look(&mut self, k: usize, time: f64) -> Result<Look, Error> {
+        self.events.looks += 1;
         let n = self.now.q.len();
         let y = self.solver.interpolate(time)?[..2 * n].to_vec();
         let (q, v) = y.split_at(n);
@@ -200,7 +196,7 @@ impl<Y: Dae> Ida<Y> {
         Ok(Look { at: time, course: self.rising_course(k).unwrap_or(Course::NONE) })
     }
 
-    /// The right end (s) of a bracket as narrow as IDA's: there the function has crossed.
+    /// The right end (s) of a narrow bracket: there the function has crossed.
     fn close_in(&mut self, k: usize, [mut low, mut high]: [Look; 2]) -> Result<f64, Error> {
         // below the noise a function counts as zero
         let level = low.course.value.max(0.0);

@@ -116,8 +116,6 @@ pub(super) enum Return {
     Stepped,
     /// At the stop time, which IDA has forgotten.
     AtStopTime,
-    /// At a root.
-    AtRoot,
 }
 
 /// IDA with its vectors, matrix and linear solver, and the system that it solves.
@@ -170,7 +168,6 @@ impl<Y: Dae> Solver<Y> {
     /// The calls that IDA wants once.
     fn set_up(&mut self, max_step: f64, stock: bool) -> Result<(), Error> {
         let (ida, shared) = (self.memory.0, self.shared.0);
-        let functions = self.shared().off.len() as c_int;
         let longest = if max_step.is_finite() { max_step } else { 0.0 };
         // SAFETY: IDA, vectors, matrix and linear solver are alive as long as `self`; `shared` is
         // the `Shared<Y>` that the callbacks of the same `Y` expect. The order is IDA's.
@@ -187,8 +184,6 @@ impl<Y: Dae> Solver<Y> {
                 IDASetMaxStep(ida, longest),
                 IDASetMaxNumSteps(ida, -1),
                 IDASetMaxErrTestFails(ida, 50),
-                IDARootInit(ida, functions, (functions > 0).then_some(roots::<Y>)),
-                IDASetNoInactiveRootWarn(ida),
             ]
         };
         flags.into_iter().try_for_each(|flag| self.check(flag, 0.0))
@@ -242,18 +237,10 @@ impl<Y: Dae> Solver<Y> {
         unsafe { components(self.y.0) }
     }
 
-    /// Begins anew at a time (s) from [`Solver::unknowns_mut`], with a first step (s), in the
-    /// system's present modes.
+    /// Begins anew at a time (s) from [`Solver::unknowns_mut`], with a first step (s).
     pub(super) fn reinitialize(&mut self, time: f64, first_step: f64) -> Result<(), Error> {
         let ida = self.memory.0;
-        let shared = self.shared_mut();
-        shared.weights.forget_rounding();
-        let mut signs = shared.watch();
-        if !signs.is_empty() {
-            // SAFETY: IDA copies the signs, one for each root function that it knows of.
-            let flag = unsafe { IDASetRootDirection(ida, signs.as_mut_ptr()) };
-            self.check(flag, time)?;
-        }
+        self.shared_mut().weights.forget_rounding();
         // SAFETY: IDA copies the vectors, which are of the size that it was made for.
         let flags =
             unsafe { [IDAReInit(ida, time, self.y.0, self.yp.0), IDASetInitStep(ida, first_step)] };
@@ -277,7 +264,6 @@ impl<Y: Dae> Solver<Y> {
         self.check(flag, time)?;
         let ended = match flag {
             IDA_TSTOP_RETURN => Return::AtStopTime,
-            IDA_ROOT_RETURN => Return::AtRoot,
             _ => Return::Stepped,
         };
         Ok((time, ended))
@@ -290,16 +276,6 @@ impl<Y: Dae> Solver<Y> {
         self.check(flag, time)?;
         // SAFETY: a vector of ours, that nothing changes while `self` is borrowed.
         Ok(unsafe { components(self.between.0) })
-    }
-
-    /// Writes which event functions passed zero at the root where the last step ended.
-    pub(super) fn roots(&mut self, fired: &mut [bool]) -> Result<(), Error> {
-        let mut found: Vec<c_int> = vec![0; self.shared().off.len()];
-        // SAFETY: IDA writes one integer for each root function that it knows of.
-        let flag = unsafe { IDAGetRootInfo(self.memory.0, found.as_mut_ptr()) };
-        self.check(flag, f64::NAN)?;
-        fired.iter_mut().zip(found).for_each(|(fired, found)| *fired = found != 0);
-        Ok(())
     }
 
     /// What IDA counted since it was last initialized.
@@ -665,24 +641,6 @@ unsafe extern "C" fn jacobian<Y: Dae>(
         let (y, yp) = (components(y), components(yp));
         let columns = slice::from_raw_parts_mut(SUNDenseMatrix_Data(matrix), y.len() * y.len());
         guard::<Y>(user, time, |shared| shared.jacobian(time, y, yp, cj, columns))
-    }
-}
-
-unsafe extern "C" fn roots<Y: Dae>(
-    time: f64,
-    y: N_Vector,
-    _yp: N_Vector,
-    values: *mut f64,
-    user: *mut c_void,
-) -> c_int {
-    // SAFETY: as in `residual`; `values` has as many members as the event functions that IDA was
-    // told of.
-    unsafe {
-        let y = components(y);
-        guard::<Y>(user, time, |shared| {
-            let values = slice::from_raw_parts_mut(values, shared.off.len());
-            shared.roots(time, y, values)
-        })
     }
 }
 

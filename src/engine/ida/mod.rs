@@ -238,7 +238,7 @@ impl<Y: Dae> Ida<Y> {
         self.now.q.copy_from_slice(&y[..n]);
         self.now.v.copy_from_slice(&y[n..2 * n]);
         self.evaluate()?;
-        let event = self.meet_events(ended == Return::AtRoot)?;
+        let event = self.meet_events()?;
         let time = self.now.time;
         self.quadrature.advance(time, self.solver.system_ref().powers());
         if self.quadrature.wants_looks(time - self.began.time) {
@@ -253,29 +253,17 @@ impl<Y: Dae> Ida<Y> {
         Ok(if event { Advance::Event } else { Advance::Stepped })
     }
 
-    /// Looks for events in the step to `self.now`, where IDA may have found a root, and goes back to
-    /// the first of them. Returns whether there is one.
-    fn meet_events(&mut self, at_root: bool) -> Result<bool, Error> {
-        if at_root {
-            self.solver.roots(&mut self.events.by_ida)?;
-        } else {
-            self.events.by_ida.fill(false);
+    /// Looks for events in the step to `self.now`, and goes back to the first of them. Returns
+    /// whether there is one.
+    fn meet_events(&mut self) -> Result<bool, Error> {
+        let Some(first) = self.find_event()? else {
+            self.events.go_on();
+            return Ok(false);
+        };
+        if first < self.now.time {
+            self.go_back(first)?;
         }
-        let found = self.find_event()?;
-        match found {
-            Some(first) if first < self.now.time - self.resolution() => {
-                self.events.between += 1;
-                self.go_back(first)?;
-                return Ok(true);
-            }
-            Some(_) => {
-                let ours = self.fired.iter_mut().zip(&self.events.by_ida);
-                ours.for_each(|(fired, by_ida)| *fired |= by_ida);
-            }
-            None => self.fired.copy_from_slice(&self.events.by_ida),
-        }
-        self.events.go_on();
-        Ok(at_root || found.is_some())
+        Ok(true)
     }
 
     /// Goes back to a time (s) within IDA's last step.
@@ -446,13 +434,12 @@ impl<Y: Dae> Engine<f64> for Ida<Y> {
             count("restarts", self.restarts),
             count("residual_evaluations", calls.residuals),
             count("jacobian_evaluations", calls.jacobians),
-            count("root_evaluations", calls.roots),
+            count("root_evaluations", self.events.looks),
             count("nonlinear_iterations", ida.nonlinear_iterations),
             count("nonlinear_convergence_failures", ida.nonlinear_convergence_failures),
             count("error_test_failures", ida.error_test_failures),
             count("steps_at_rounding", self.solver.floored()),
             count("recoveries", self.recoveries),
-            count("events_within_steps", self.events.between),
             count("unproven_steps", self.events.unproven),
         ]
     }

@@ -2,7 +2,7 @@
 
 use super::Error;
 use super::tolerance::Weights;
-use crate::dae::{Dae, Direction, Fault, State};
+use crate::dae::{Dae, Fault};
 use nalgebra::DMatrixViewMut;
 use std::any::Any;
 use std::ffi::c_int;
@@ -19,15 +19,12 @@ enum Stop {
 pub(super) struct Calls {
     pub(super) residuals: u64,
     pub(super) jacobians: u64,
-    pub(super) roots: u64,
 }
 
 /// The system, and all else that the callbacks need.
 pub(super) struct Shared<Y> {
     pub(super) system: Y,
     pub(super) weights: Weights,
-    /// Which event functions are not watched.
-    pub(super) off: Vec<bool>,
     pub(super) calls: Calls,
     /// What IDA said last.
     pub(super) words: String,
@@ -39,7 +36,6 @@ pub(super) struct Shared<Y> {
 impl<Y: Dae> Shared<Y> {
     pub(super) fn new(system: Y, weights: Weights) -> Self {
         Shared {
-            off: vec![true; system.watches().len()],
             system,
             weights,
             calls: Calls::default(),
@@ -47,20 +43,6 @@ impl<Y: Dae> Shared<Y> {
             setback: None,
             stop: None,
         }
-    }
-
-    /// Takes in how the event functions are watched; returns IDA's codes for the directions.
-    pub(super) fn watch(&mut self) -> Vec<c_int> {
-        let number = self.system.watches().len();
-        assert_eq!(number, self.off.len(), "the number of event functions changed");
-        let directions = self.system.watches().iter().map(|watch| watch.direction);
-        self.off = directions.clone().map(|direction| direction == Direction::Off).collect();
-        let code = |direction| match direction {
-            Direction::Rising => 1,
-            Direction::Falling => -1,
-            Direction::Off => 0,
-        };
-        directions.map(code).collect()
     }
 
     /// Runs `f` for a callback: 0 done, 1 try a shorter step, −1 give up.
@@ -122,24 +104,6 @@ impl<Y: Dae> Shared<Y> {
         self.system.jacobian(time, y, yp, cj, &mut view)?;
         self.weights.know_rounding(y, cj, columns);
         Ok(())
-    }
-
-    /// The event functions; IDA knows no shorter step when they fail, so every fault is final.
-    #[inline(always)]
-    pub(super) fn roots(&mut self, time: f64, y: &[f64], values: &mut [f64]) -> Result<(), Fault> {
-        self.calls.roots += 1;
-        let n = self.system.coordinates();
-        let state = State { time, q: &y[..n], v: &y[n..2 * n], carried: None };
-        let evaluated = self.system.event_values(state, values);
-        values
-            .iter_mut()
-            .zip(&self.off)
-            .filter(|(_, off)| **off)
-            .for_each(|(value, _)| *value = 1.0);
-        match evaluated.and_then(|()| finite(values, "an event function")) {
-            Err(Fault::TryShorterStep(complaint)) => Err(Fault::Fatal(complaint.into())),
-            otherwise => otherwise,
-        }
     }
 }
 

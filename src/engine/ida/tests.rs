@@ -373,6 +373,77 @@ impl<F: FnMut(f64, f64, f64) -> Result<f64, Fault>> Formulas for Free<F> {
     }
 }
 
+/// A free mass under the force t², whose event function is what a test wants.
+struct Watched {
+    pressed: bool,
+    event: fn(f64) -> f64,
+}
+
+impl Formulas for Watched {
+    fn scales(&self) -> (Vec<f64>, Vec<f64>) {
+        (vec![1.0], vec![1.0])
+    }
+    fn forces(&mut self, t: f64, _q: &[f64], _v: &[f64], f: &mut [f64]) -> Result<(), Fault> {
+        f[0] = if self.pressed { t * t } else { 0.0 };
+        Ok(())
+    }
+    fn watches(&self) -> Vec<Watch> {
+        vec![Watch { direction: Direction::Rising, power: 1.0 }]
+    }
+    fn events(&mut self, _t: f64, q: &[f64], _v: &[f64], g: &mut [f64]) -> Result<(), Fault> {
+        g[0] = (self.event)(q[0]);
+        Ok(())
+    }
+}
+
+#[test]
+fn an_event_that_is_over_at_the_end_of_its_step_is_found_and_is_the_first_of_them() {
+    for (event, exact) in [
+        ((|q| 1e-6 - (q - 0.3).powi(2)) as fn(f64) -> f64, 0.3 - 1e-3),
+        (|q| (1e-8 - (q - 0.3).powi(2)).max(1e-8 - (q - 0.5).powi(2)), 0.3 - 1e-4),
+    ] {
+        let mut engine = engine(Watched { pressed: false, event });
+        engine.restart(&snapshot(0.0, &[0.0], &[1.0], &[])).unwrap();
+        assert_eq!(advance(&mut engine, 10.0).unwrap(), Advance::Event);
+        let now = engine.now();
+        assert!((now.time - exact).abs() < 1e-12, "{} {exact}", now.time);
+        assert!(event(now.q[0]) > 0.0, "an event has been crossed");
+        assert_eq!(engine.fired(), [true]);
+    }
+}
+
+#[test]
+fn a_function_that_is_zero_at_a_restart_and_rises_later_is_an_event() {
+    let mut engine = engine(Watched { pressed: true, event: |q| q });
+    engine.restart(&snapshot(0.0, &[0.0], &[0.0], &[])).unwrap();
+    assert_eq!(advance(&mut engine, 1.0).unwrap(), Advance::Event);
+    // q = t⁴/12 is noise until 1e-13
+    assert!(engine.now().time < 2e-3, "{}", engine.now().time);
+}
+
+#[test]
+fn a_function_that_begins_beyond_zero_has_to_fall_before_it_is_an_event() {
+    let mut engine = engine(Watched { pressed: false, event: |q| (q - 0.2) * (q - 0.6) });
+    engine.restart(&snapshot(0.0, &[0.0], &[1.0], &[])).unwrap();
+    assert_eq!(advance(&mut engine, 2.0).unwrap(), Advance::Event);
+    assert!((engine.now().time - 0.6).abs() < 1e-12, "{}", engine.now().time);
+}
+
+#[test]
+fn a_run_that_cannot_reach_its_end_is_given_up_with_advice() {
+    let mut pace = Pace::default();
+    let mut crawl = |step: f64| -> Result<u32, Error> {
+        for i in 1..1_000_000 {
+            pace.made(0.1 + f64::from(i) * step, 1.0, f64::INFINITY)?;
+        }
+        Ok(0)
+    };
+    assert!(crawl(1e-9).is_ok(), "a billion steps can be done");
+    let error = crawl(1e-13).unwrap_err();
+    assert!(matches!(error, Error::TooSlow { .. }), "{error:?}");
+    assert!(error.to_string().contains("absolute_tolerance = \"scaled\""), "{error}");
+}
+
 #[test]
 fn stock_and_own_vector_operations_lead_to_the_same_result() {
     for norm in [Norm::Ode15s, Norm::Wrms] {

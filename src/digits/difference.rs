@@ -5,27 +5,8 @@
 //! over the state (angles, angular rates, velocities of mass centres, clearance vectors), over
 //! the forces, or over the torques.
 
+use super::Scales;
 use crate::mechanism::Observation;
-
-/// Doubles tell no more digits than this.
-pub const MOST_DIGITS: f64 = 16.0;
-
-/// Sizes that errors are measured by.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Scales {
-    /// Of angles (rad): one.
-    pub angle: f64,
-    /// Of angular rates: the largest of any body (rad/s).
-    pub angular_velocity: f64,
-    /// Of velocities: the largest speed of any mass centre (m/s).
-    pub velocity: f64,
-    /// Of clearance vectors: their radial clearance (m), by clearance.
-    pub clearances: Vec<f64>,
-    /// Of forces: the largest of any joint (N).
-    pub force: f64,
-    /// Of torques: the largest of any drive (N m).
-    pub torque: f64,
-}
 
 /// Something for each part of an observation that errors are measured over.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -59,29 +40,10 @@ impl<T: Copy> Parts<T> {
 }
 
 impl Scales {
-    /// The scales of a trajectory whose clearances are these (m).
-    pub fn of(samples: &[Observation], clearances: Vec<f64>) -> Self {
-        let bodies = || samples.iter().flat_map(|sample| &sample.bodies);
-        let joints = samples.iter().flat_map(|sample| &sample.joints);
-        let torques = samples.iter().flat_map(|sample| &sample.drive_torques);
-        let largest = |values: &mut dyn Iterator<Item = f64>| {
-            let largest = values.fold(0.0, f64::max);
-            if largest > 0.0 { largest } else { 1.0 }
-        };
-        Scales {
-            angle: 1.0,
-            angular_velocity: largest(&mut bodies().map(|body| body.angular_velocity.abs())),
-            velocity: largest(&mut bodies().map(|b| b.velocity[0].hypot(b.velocity[1]))),
-            clearances,
-            force: largest(&mut joints.map(|joint| joint.force[0].hypot(joint.force[1]))),
-            torque: largest(&mut torques.map(|torque| torque.abs())),
-        }
-    }
-
-    /// Largest scaled differences of two observations, as far as their doubles and remainders
+    /// Worst scaled differences of two observations, as far as their doubles and remainders
     /// tell. What is not a number differs without bound.
     pub fn differences(&self, a: &Observation, b: &Observation) -> Parts<f64> {
-        let mut state = Largest::default();
+        let mut state = Worst::default();
         for (place, (of_a, of_b)) in a.bodies.iter().zip(&b.bodies).enumerate() {
             let at = |c: usize| beyond(a, 6 * place + c) - beyond(b, 6 * place + c);
             state.take((of_a.angle - of_b.angle) + at(2), self.angle);
@@ -99,7 +61,7 @@ impl Scales {
                 state.take((of_a.offset[c] - of_b.offset[c]) + more, self.clearances[k]);
             }
         }
-        let mut forces = Largest::default();
+        let mut forces = Worst::default();
         for (of_a, of_b) in a.joints.iter().zip(&b.joints) {
             for c in 0..2 {
                 forces.take(of_a.force[c] - of_b.force[c], self.force);
@@ -109,7 +71,7 @@ impl Scales {
             forces.take(of_a.normal_force - of_b.normal_force, self.force);
             forces.take(of_a.tangential_force - of_b.tangential_force, self.force);
         }
-        let mut torque = Largest::default();
+        let mut torque = Worst::default();
         for (of_a, of_b) in a.drive_torques.iter().zip(&b.drive_torques) {
             torque.take(of_a - of_b, self.torque);
         }
@@ -126,19 +88,14 @@ impl Scales {
     pub fn rounding(&self, observation: &Observation) -> Parts<f64> {
         let state = self.beyond(observation);
         let ulp = |x: f64| (x.abs().next_up() - x.abs()) / 2.0;
-        let mut forces = Largest::default();
+        let mut forces = Worst::default();
         for joint in &observation.joints {
             joint.force.iter().for_each(|force| forces.take(ulp(*force), self.force));
         }
-        let mut torque = Largest::default();
+        let mut torque = Worst::default();
         observation.drive_torques.iter().for_each(|drive| torque.take(ulp(*drive), self.torque));
         Parts { state, forces: forces.0, torque: torque.0 }
     }
-}
-
-/// Digits of a scaled difference.
-pub fn digits(difference: f64) -> f64 {
-    (-difference.log10()).min(MOST_DIGITS)
 }
 
 fn beyond(observation: &Observation, at: usize) -> f64 {
@@ -147,9 +104,9 @@ fn beyond(observation: &Observation, at: usize) -> f64 {
 
 /// The largest of scaled differences; infinite once one is not a number.
 #[derive(Default)]
-struct Largest(f64);
+struct Worst(f64);
 
-impl Largest {
+impl Worst {
     fn take(&mut self, difference: f64, scale: f64) {
         let scaled = difference.abs() / scale;
         self.0 = if scaled.is_nan() { f64::INFINITY } else { self.0.max(scaled) };
@@ -158,6 +115,7 @@ impl Largest {
 
 #[cfg(test)]
 mod tests {
+    use super::super::{Sizes, digits};
     use super::*;
     use crate::mechanism::BodyObservation;
 
@@ -168,7 +126,8 @@ mod tests {
     }
 
     fn scales() -> Scales {
-        Scales::of(&[turned(1.0, 0.0)], Vec::new())
+        let sizes = Sizes { mass: 1.0, length: 1.0, rate: 1.0, clearances: Vec::new() };
+        Scales::of(&[turned(1.0, 0.0)], &sizes)
     }
 
     #[test]

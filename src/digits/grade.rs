@@ -6,7 +6,7 @@
 //! u is half a unit in the last place of the reference's number: so much of the truth is lost by
 //! writing it down in a double. What is not a number agrees with nothing.
 
-use crate::certify::MOST_DIGITS;
+use super::{MOST_DIGITS, digits};
 
 /// How well a number, or the worst of several, agrees with its reference.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -23,7 +23,7 @@ impl Grade {
     /// The grade of a number in a column whose errors are measured with `scale`.
     pub fn new(theirs: f64, reference: f64, scale: f64, column: usize) -> Grade {
         let error = (theirs - reference).abs();
-        Grade { digits: digits(error, reference, scale), at_least: error == 0.0, column }
+        Grade { digits: grade(error, reference, scale), at_least: error == 0.0, column }
     }
 
     /// The same for angles (rad), whole turns left out.
@@ -53,14 +53,9 @@ pub fn whole_turns(theirs: f64, reference: f64) -> f64 {
     ((theirs - reference) / turn).round() * turn
 }
 
-fn digits(error: f64, reference: f64, scale: f64) -> f64 {
+fn grade(error: f64, reference: f64, scale: f64) -> f64 {
     let off = error + reference.abs() * (f64::EPSILON / 2.0);
-    if off == 0.0 {
-        return MOST_DIGITS;
-    }
-    let digits = -(off / scale).log10();
-    // NaN stays below everything
-    if digits.is_nan() { f64::NEG_INFINITY } else { digits.min(MOST_DIGITS) }
+    if off == 0.0 { MOST_DIGITS } else { digits(off / scale) }
 }
 
 /// Up to which time at least so many digits agree.
