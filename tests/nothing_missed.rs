@@ -11,16 +11,19 @@ use freeplay::mechanism::Observation;
 use freeplay::run::{Contact, Progress, Trajectory};
 use freeplay::scalar::{F256, Scalar};
 use freeplay::simulate::{Simulation, assemble};
+use nix::sys::resource::{UsageWho, getrusage};
+use nix::sys::time::TimeVal;
 use simulated::{case, root, told};
 use std::error::Error;
 use std::ops::ControlFlow;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, mpsc};
+use std::sync::mpsc;
 use std::time::Duration;
 
 const ENGINES: [&str; 2] = ["ida", "explicit"];
-/// Wall clock (s) of a run that takes a second or two at most.
-const PATIENCE: u64 = 60;
+/// CPU (s) of a run that takes a few seconds at most.
+const PATIENCE: f64 = 60.0;
+/// Wall clock (s) after which a run that says nothing hangs, however busy the machine.
+const HANGS: u64 = 900;
 
 /// A mechanism of `tests/nothing_missed`, on an engine at a tolerance.
 fn mechanism(name: &str, engine: &str, tolerance: f64, set: &[&str]) -> Case {
@@ -36,11 +39,10 @@ fn from(path: &str, engine: &str, tolerance: f64, set: &[&str]) -> Case {
 /// A run to its end, or the words in which it gave up, or that it did not get there in time.
 fn run(case: &Case) -> Result<Trajectory, String> {
     let (send, receive) = mpsc::channel();
-    let enough = Arc::new(AtomicBool::new(false));
-    let (case, stop) = (case.clone(), enough.clone());
+    let case = case.clone();
     std::thread::spawn(move || {
         let mut kept = Trajectory::default();
-        let mut watch = |_: &Progress| match stop.load(Ordering::Relaxed) {
+        let mut watch = |_: &Progress| match cpu() > PATIENCE {
             true => ControlFlow::Break(()),
             false => ControlFlow::Continue(()),
         };
@@ -49,15 +51,21 @@ fn run(case: &Case) -> Result<Trajectory, String> {
             .and_then(|ready| ready.run(&mut kept, &mut watch).1.map_err(|error| words(&error)));
         let _ = send.send(ran.map(|()| kept));
     });
-    let ran = receive.recv_timeout(Duration::from_secs(PATIENCE));
-    enough.store(true, Ordering::Relaxed);
-    ran.unwrap_or_else(|_| Err(format!("it was not done after {PATIENCE} s")))
+    let ran = receive.recv_timeout(Duration::from_secs(HANGS));
+    ran.unwrap_or_else(|_| Err(format!("it hangs: it said nothing for {HANGS} s")))
+}
+
+/// CPU (s) of this thread so far.
+fn cpu() -> f64 {
+    let usage = getrusage(UsageWho::RUSAGE_THREAD).unwrap();
+    let seconds = |time: TimeVal| time.tv_sec() as f64 + 1e-6 * time.tv_usec() as f64;
+    seconds(usage.user_time()) + seconds(usage.system_time())
 }
 
 /// A run that must get to its end and see its own contacts.
 fn sound(case: &Case, what: &str) -> Trajectory {
     let kept = run(case).unwrap_or_else(|error| panic!("{what}: {error}"));
-    assert_sound(&kept, what);
+    assert_sound(&kept, case.plan.solver.relative_tolerance, what);
     kept
 }
 
@@ -72,12 +80,15 @@ fn words(error: &dyn Error) -> String {
 }
 
 /// Whether journals in flight are inside their clearances, and contacts are contacts: each begins
-/// inwards and ends after it began, and the next of its clearance later still.
-fn assert_sound(kept: &Trajectory, what: &str) {
+/// inwards and ends after it began, and the next of its clearance later still. A tolerance that is
+/// looser than any in use lands on the wall as it can.
+fn assert_sound(kept: &Trajectory, tolerance: f64, what: &str) {
     for sample in &kept.samples {
         for clearance in sample.clearances.iter().filter(|clearance| !clearance.in_contact) {
             let depth = clearance.penetration;
-            assert!(depth <= 1e-12, "{what}: {depth:e} m deep in flight at {:e} s", sample.time);
+            let radial = clearance.eccentricity - depth;
+            let allowed = if tolerance > 1e-6 { tolerance * radial } else { 1e-12 };
+            assert!(depth <= allowed, "{what}: {depth:e} m deep in flight at {:e} s", sample.time);
         }
     }
     let clearances = kept.samples[0].clearances.len();
@@ -118,12 +129,14 @@ fn energy_off(kept: &Trajectory) -> f64 {
     largest(&|sample| sample.energy.residual) / sizes.into_iter().fold(f64::MIN_POSITIVE, f64::max)
 }
 
-/// First time (s) at which the journal of the eccentric rotor is 1 mm from the bearing's centre:
-/// (0.01 t + 0.0003 cos 300t)² + (0.0003 sin 300t)² = c².
-fn eccentric_rotor_strikes() -> f64 {
+/// First time (s) at which a journal that flies freely is 1 mm from the bearing's centre: at `fall`
+/// (m/s²) downwards, at a speed (m/s) to the right, turning at a rate (rad/s) on an arm (m) from an
+/// angle (rad) on:
+/// (v t + r cos(φ + ω t))² + (r sin(φ + ω t) − g t²/2)² = c².
+fn strikes([speed, fall]: [f64; 2], [arm, angle, rate]: [f64; 3]) -> f64 {
     let beyond = |t: f64| {
-        let (sin, cos) = (300.0 * t).sin_cos();
-        (0.01 * t + 3e-4 * cos).hypot(3e-4 * sin) - 1e-3
+        let (sin, cos) = (angle + rate * t).sin_cos();
+        (speed * t + arm * cos).hypot(arm * sin - 0.5 * fall * t * t) - 1e-3
     };
     let mut inside = 0.0;
     while beyond(inside + 1e-6) < 0.0 {
@@ -139,7 +152,7 @@ fn eccentric_rotor_strikes() -> f64 {
 
 #[test]
 fn a_rotor_that_turns_often_before_it_strikes_is_not_let_through_the_wall() {
-    let strikes = eccentric_rotor_strikes();
+    let strikes = strikes([0.01, 0.0], [3e-4, 0.0, 300.0]);
     assert!((strikes - 0.080_457_513_881_85).abs() < 1e-14);
     for engine in ENGINES {
         for tolerance in [1e-2, 1e-4, 1e-6, 1e-9, 1e-12, 1e-14] {
@@ -294,7 +307,7 @@ fn what_both_references_would_skip_is_not_certified() {
     let simulation = told(Simulation::new(&case));
     let go_on = |_| ControlFlow::Continue(());
     let reference = told(certify::reference(&case, simulation.schedule(), 10.0, &go_on));
-    assert_sound(&reference.trajectory, "the reference");
+    assert_sound(&reference.trajectory, 1e-20, "the reference");
     assert_begins(&reference.trajectory.contacts, &known, 1e-9, "the reference");
     let mut go_on = |_: &Progress| ControlFlow::Continue(());
     let certificate = told(certify::certify(simulation, reference, &mut go_on));
@@ -441,18 +454,20 @@ fn a_motor_on_its_own_clearance_runs_at_every_tolerance() {
 #[test]
 fn rotors_that_spin_and_drop_land_on_every_event() {
     for turn in 0..18 {
+        let angle = 0.349 * f64::from(turn);
         let start = format!(
-            "start.rotor={{x=0.0, y=0.0, angle={:.3}, velocity_x=0.0, velocity_y=0.0, \
-             angular_velocity=1000.0, fixed=true}}",
-            0.349 * f64::from(turn)
+            "start.rotor={{x=0.0, y=0.0, angle={angle:.3}, velocity_x=0.0, velocity_y=0.0, \
+             angular_velocity=1000.0, fixed=true}}"
         );
         let set =
-            ["bodies.rotor.points.J=[0.0001, 0.0]", start.as_str(), GRAVITY, "run.duration=0.05"];
-        let [one, other] = ENGINES.map(|engine| {
+            ["bodies.rotor.points.J=[0.0001, 0.0]", start.as_str(), GRAVITY, "run.duration=0.06"];
+        let strikes = strikes([0.0, 9.81], [1e-4, angle, 1000.0]);
+        for engine in ENGINES {
             let what = format!("{engine}, {start}");
-            sound(&mechanism("eccentric-rotor", engine, 1e-12, &set), &what).contacts.len()
-        });
-        assert!(one > 0 && one == other, "{start}: {one} and {other} contacts");
+            let kept = sound(&mechanism("eccentric-rotor", engine, 1e-12, &set), &what);
+            assert_begins(&kept.contacts[..1], &[strikes], 1e-11, &what);
+            assert!(kept.contacts.len() > 1, "{what}: {} contacts", kept.contacts.len());
+        }
     }
 }
 

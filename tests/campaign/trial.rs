@@ -22,8 +22,10 @@ const MOST_STEPS: u64 = 3000;
 const SLOW: f64 = 100.0;
 /// … and more than this (s of CPU).
 const QUICK: f64 = 1.0;
-/// Wall clock (s) after which a run that says nothing counts as hanging.
-const HANGS: u64 = 90;
+/// CPU (s) that no run may take.
+const TOO_LONG: f64 = 30.0;
+/// Wall clock (s) after which a run that says nothing hangs, however busy the machine.
+const HANGS: u64 = 600;
 /// Penetration (m) that flight may have.
 const IN_THE_WALL: f64 = 1e-12;
 /// Distance, over the clearance, that a contact may be off the wall.
@@ -254,7 +256,7 @@ pub fn trial(drawn: &Drawn, samples: u64) -> Option<Verdict> {
         for engine in ENGINES {
             let set = keys(engine, tolerance, Some(duration), samples);
             let case = case(drawn, &set).ok()?;
-            let allowed = (SLOW * quick).clamp(QUICK, HANGS as f64 / 3.0);
+            let allowed = (SLOW * quick).clamp(QUICK, TOO_LONG);
             let ran = run(drawn, &case, Limit { steps: u64::MAX, cpu: allowed });
             let what = format!("{engine} at {tolerance:e}");
             if let Some(ran) = &ran {
@@ -393,7 +395,7 @@ impl Growth {
         std::thread::spawn(move || {
             let Ok(simulation) = Simulation::new(&case) else { return };
             let began = cpu();
-            let mut watch = |_: &Progress| match cpu() - began > HANGS as f64 / 3.0 {
+            let mut watch = |_: &Progress| match cpu() - began > TOO_LONG {
                 true => ControlFlow::Break(()),
                 false => ControlFlow::Continue(()),
             };
