@@ -22,4 +22,5 @@ pub use overview::Overview;
 pub(crate) use publish::Draft;
 pub use reader::{ResultFile, Table};
 pub use schema::{DATASETS, Dataset, Dimension, SCHEMA_VERSION, Source, Values, column_name};
+pub use store::hdf5_version;
 pub use writer::Writer;
