@@ -4,8 +4,10 @@
 mod written;
 
 use clap::CommandFactory;
+use freeplay::case::{Case, Changes};
 use freeplay::cli::CommandLine;
 use freeplay::record::{DATASETS, Dimension};
+use serde_json::Value;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -214,5 +216,119 @@ fn every_command_of_the_readme_s_start_runs() {
         command.args(["-c", &script]).current_dir(folder.path()).env("PATH", path());
         command.env("PYTHONPATH", root().join("python")).env("PYTHONDONTWRITEBYTECODE", "1");
         said_by(&mut command);
+    }
+}
+
+/// The schema of a case file at a path of keys; `None` where it knows no such key.
+fn schema_at<'a>(schema: &'a Value, keys: &[&str]) -> Option<&'a Value> {
+    let mut at = schema;
+    for key in keys {
+        let next = at["properties"].get(key).or_else(|| at.get("additionalProperties"));
+        at = next.filter(|next| !next.is_boolean())?;
+        if let Some(reference) = at["$ref"].as_str() {
+            at = &schema["$defs"][reference.strip_prefix("#/$defs/")?];
+        }
+    }
+    Some(at)
+}
+
+fn schema() -> Value {
+    serde_json::from_str(&read("docs/case.schema.json")).unwrap()
+}
+
+/// What the program says of a case with a key set to a word that it cannot know.
+fn complaint(key: &str) -> String {
+    let text = read("cases/four-bar-a-friction.toml")
+        + "\n[loads.gravity]\nkind = \"gravity\"\nacceleration = [0.0, -9.81]\n";
+    let set = vec![format!("{key}=zzzzzzzz").parse().unwrap()];
+    let read = Case::from_text(Path::new("case.toml"), &text, &Changes { set, ideal: false });
+    read.expect_err(key).to_string()
+}
+
+#[test]
+fn the_schema_of_cases_has_the_keys_that_the_program_reads() {
+    let schema = schema();
+    for table in [
+        "",
+        "ground",
+        "bodies.crank",
+        "joints.A",
+        "joints.A.clearance",
+        "joints.A.clearance.normal",
+        "joints.A.clearance.friction",
+        "drives.crank",
+        "loads.gravity",
+        "start.coupler",
+        "run",
+        "solver",
+    ] {
+        let keys: Vec<&str> = table.split('.').filter(|key| !key.is_empty()).collect();
+        let dot = if table.is_empty() { "" } else { "." };
+        let said = complaint(&format!("{table}{dot}zzzzzzzz"));
+        let known = said.split("known here: ").nth(1).unwrap_or_else(|| panic!("{said}"));
+        let mut known: Vec<&str> = known.lines().next().unwrap().split(", ").collect();
+        let in_schema = schema_at(&schema, &keys).unwrap()["properties"].as_object().unwrap();
+        let mut told: Vec<&str> = in_schema.keys().map(String::as_str).collect();
+        known.sort_unstable();
+        told.sort_unstable();
+        assert_eq!(told, known, "{table} in docs/case.schema.json, and the keys that are read");
+    }
+}
+
+#[test]
+fn the_schema_of_cases_has_the_words_that_the_program_reads() {
+    let schema = schema();
+    for key in [
+        "joints.A.kind",
+        "joints.A.clearance.tension",
+        "joints.A.clearance.normal.law",
+        "joints.A.clearance.normal.stiffness",
+        "joints.A.clearance.friction.law",
+        "drives.crank.kind",
+        "loads.gravity.kind",
+        "run.sampling",
+        "solver.engine",
+        "solver.norm",
+        "solver.absolute_tolerance",
+    ] {
+        let said = complaint(key);
+        let line = said.lines().find(|line| line.contains(key)).unwrap();
+        let must = line.split("must be ").nth(1).and_then(|rest| rest.split(", is ").next());
+        let known: Vec<&str> = must.unwrap().split('"').skip(1).step_by(2).collect();
+        let keys: Vec<&str> = key.split('.').collect();
+        let at = schema_at(&schema, &keys).unwrap();
+        let words = at.get("enum").unwrap_or_else(|| &at["oneOf"][1]["enum"]);
+        assert_eq!(words, &serde_json::json!(known), "{key} in docs/case.schema.json");
+    }
+}
+
+#[test]
+fn the_schema_of_cases_knows_every_key_of_every_case() {
+    let schema = schema();
+    for folder in ["cases", "tests/cases", "src/cli/new"] {
+        for entry in std::fs::read_dir(root().join(folder)).unwrap() {
+            let path = entry.unwrap().path();
+            let text = std::fs::read_to_string(&path).unwrap();
+            let case: toml_edit::DocumentMut = text.parse().unwrap();
+            check_keys(&schema, case.as_table(), &mut Vec::new(), &path);
+        }
+    }
+}
+
+/// Every key of a table, and of those in it, is in the schema.
+fn check_keys(
+    schema: &Value,
+    table: &dyn toml_edit::TableLike,
+    above: &mut Vec<String>,
+    case: &Path,
+) {
+    for (key, item) in table.iter() {
+        above.push(key.to_owned());
+        let keys: Vec<&str> = above.iter().map(String::as_str).collect();
+        assert!(schema_at(schema, &keys).is_some(), "{}: {above:?}", case.display());
+        if let Some(table) = item.as_table_like() {
+            check_keys(schema, table, above, case);
+        }
+        above.pop();
     }
 }
