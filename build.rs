@@ -1,7 +1,8 @@
-//! Binds the two functions that tell SUNDIALS' version and that `sundials-sys` leaves out.
+//! Binds the two functions that tell SUNDIALS' version and that `sundials-sys` leaves out, and
+//! tells the program which commit it is built from.
 
-use std::path::PathBuf;
-use std::process::exit;
+use std::path::{Path, PathBuf};
+use std::process::{Command, exit};
 
 const HEADERS_MISSING: &str = "the headers of SUNDIALS were not found: freeplay needs SUNDIALS 6.4 \
     with IDA (Debian and Ubuntu: `apt install libsundials-dev libclang-dev`); if they are \
@@ -10,6 +11,7 @@ const HEADERS_MISSING: &str = "the headers of SUNDIALS were not found: freeplay 
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");
     println!("cargo::rerun-if-env-changed=SUNDIALS_INCLUDE_DIR");
+    println!("cargo::rustc-env=FREEPLAY_COMMIT={}", commit().unwrap_or_default());
     if let Err(complaint) = bind_version() {
         eprintln!("error: {complaint}");
         exit(1);
@@ -29,4 +31,31 @@ fn bind_version() -> Result<(), String> {
     bindings
         .write_to_file(PathBuf::from(out).join("sundials_version.rs"))
         .map_err(|cause| format!("the bindings could not be written: {cause}"))
+}
+
+/// What the program is made of; a commit does not tell it where one of these differs from it.
+const SOURCES: [&str; 4] = ["src", "build.rs", "Cargo.toml", "Cargo.lock"];
+
+/// The commit that the sources were built at, with " and changes" behind it where they were not
+/// those of the commit; nothing without git, and in a folder that is no checkout of its own. A
+/// commit alone has nothing built again: what was built is still what it says.
+fn commit() -> Option<String> {
+    let folder = std::env::var("CARGO_MANIFEST_DIR").ok()?;
+    let top = git(&folder, &["rev-parse", "--show-toplevel"])?;
+    if Path::new(&top).canonicalize().ok()? != Path::new(&folder).canonicalize().ok()? {
+        return None;
+    }
+    let commit = git(&folder, &["rev-parse", "--short=12", "HEAD"])?;
+    for source in SOURCES {
+        println!("cargo::rerun-if-changed={source}");
+    }
+    let differs = git(&folder, &[&["diff", "--name-only", "HEAD", "--"], &SOURCES[..]].concat())?;
+    Some(if differs.is_empty() { commit } else { format!("{commit} and changes") })
+}
+
+/// What git says, without the end of the line; nothing if it is not there or fails.
+fn git(folder: &str, arguments: &[&str]) -> Option<String> {
+    let output = Command::new("git").arg("-C").arg(folder).args(arguments).output().ok()?;
+    let said = output.status.success().then_some(output.stdout)?;
+    Some(String::from_utf8(said).ok()?.trim_end().to_owned())
 }

@@ -2,7 +2,10 @@
 # Checks everything: format, lints, documentation, all tests. Sets up what that needs.
 source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
 
-need_packages "${BUILD_PACKAGES[@]}" hdf5-tools netcdf-bin octave octave-netcdf python3-venv chromium
+# without its recommended packages Octave has nothing to draw with: gnuplot draws, in FreeSans, and
+# ghostscript makes the PNG of it
+need_packages "${BUILD_PACKAGES[@]}" hdf5-tools netcdf-bin octave octave-netcdf \
+    gnuplot-nox fonts-freefont-otf ghostscript python3-venv chromium
 need_rust rustfmt clippy
 need_python
 need_browser_driver

@@ -50,7 +50,7 @@ impl Error<Infallible> {
 pub struct Statistics {
     /// Counts of the engine.
     pub engine: Vec<Count>,
-    /// Counts of the rulings.
+    /// How often the decisions were called on.
     pub rulings: Vec<Count>,
 }
 
@@ -288,7 +288,7 @@ pub fn header(case: &Case, mechanism: &Mechanism<f64>, started_utc: String) -> H
     }
 }
 
-/// Solver settings and rulings, by the names they have in result files.
+/// Solver settings and decisions, by the names they have in result files.
 fn attributes(case: &Case, mechanism: &Mechanism<f64>) -> Vec<(String, Attribute)> {
     let solver = &case.plan.solver;
     let name_of = |engine: EngineName| {

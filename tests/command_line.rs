@@ -118,8 +118,23 @@ fn every_command_explains_itself() {
             assert!(beside || below, "{command} leaves {:?} unexplained", option[0]);
         }
     }
-    let version = desk.run(&["--version"]);
-    assert_eq!(version.out, format!("freeplay {}\n", env!("CARGO_PKG_VERSION")));
+}
+
+#[test]
+fn the_version_tells_the_commit_and_the_libraries() {
+    let desk = Desk::new();
+    let lines = |argument: &str| -> Vec<String> {
+        desk.run(&[argument]).assert_code(0).out.lines().map(str::to_owned).collect()
+    };
+    let [first, sundials, hdf5] = &lines("--version")[..] else { panic!("three lines") };
+    let commit = first.strip_prefix(concat!("freeplay ", env!("CARGO_PKG_VERSION"), " (commit "));
+    let commit = commit.and_then(|rest| rest.strip_suffix(')')).expect("a commit in brackets");
+    let commit = commit.trim_end_matches(" and changes");
+    let is_hash = commit.len() == 12 && commit.bytes().all(|c| c.is_ascii_hexdigit());
+    assert!(is_hash || commit == "unknown: built without git", "{first}");
+    assert!(sundials.starts_with("SUNDIALS 6.4."), "{sundials}");
+    assert!(hdf5.starts_with("HDF5 1."), "{hdf5}");
+    assert_eq!(lines("-V"), std::slice::from_ref(first));
 }
 
 #[test]

@@ -245,3 +245,73 @@ fn digits_that_doubles_have_left_are_drawn_and_none_below_zero() {
     assert!(figure.svg.contains(">left to double precision<"));
     assert!(figure.svg.contains(">0<") && !figure.svg.contains('−'), "no axis below zero");
 }
+
+#[test]
+fn outlined_figures_hold_no_text_and_look_the_same() {
+    let folder = folder();
+    let file = || opened(folder.path(), "a.h5", &Recorded::new(&["A"], 40, 5));
+    let force = |outlines| {
+        let options = Options { outlines, ..Options::default() };
+        let _ = std::fs::remove_file(folder.path().join("a.h5"));
+        let figures = draw(vec![file()], &options).unwrap();
+        figures.into_iter().find(|figure| figure.name == "force-A").unwrap()
+    };
+    let [text, outlines] = [false, true].map(force);
+    assert!(text.svg.contains("<text ") && !outlines.svg.contains("<text "));
+    assert!(outlines.svg.contains("aria-label=\"Time, t ("));
+    let pixels = |figure: &freeplay::figure::Figure| {
+        let file = figure.encode(Format::Png).unwrap();
+        let mut reader = png::Decoder::new(std::io::Cursor::new(file)).read_info().unwrap();
+        let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
+        reader.next_frame(&mut pixels).unwrap();
+        pixels
+    };
+    let (text, outlines) = (pixels(&text), pixels(&outlines));
+    assert_eq!(text.len(), outlines.len());
+    // kerning, and coordinates of a hundredth of a point, move the edges of letters
+    let differ = text.iter().zip(&outlines).filter(|(a, b)| a.abs_diff(**b) > 128).count();
+    let dark = text.iter().filter(|value| **value < 128).count();
+    assert!(differ * 10 < dark, "{differ} of {dark}");
+}
+
+#[test]
+fn runs_are_called_by_their_labels_and_share_a_panel_if_asked_to() {
+    let folder = folder();
+    let [first, second] = ["first", "second"].map(|name| {
+        Recorded::new(&["A"], 9, 0).write(&folder.path().join(format!("{name}.h5")), false)
+    });
+    let figures = folder.path().join("figures");
+    let labels = ["--only", "force-A", "--overlay", "--label", "c = 1 mm", "--label", "<c>"];
+    let plotted = plot(&[&first, &second], &figures, &labels);
+    assert!(plotted.status.success(), "{plotted:?}");
+    let svg = std::fs::read_to_string(figures.join("force-A.svg")).unwrap();
+    for words in [">c = 1 mm<", ">&lt;c&gt;<", ">A<"] {
+        assert_eq!(svg.matches(words).count(), 1, "{words}");
+    }
+    assert!(!svg.contains("(a)"), "one panel");
+    let refused = plot(&[&first, &second], &figures, &["--label", "one", "--force"]);
+    assert_eq!(refused.status.code(), Some(2), "{refused:?}");
+    assert!(told(&refused).contains("labels 1, files 2"), "{}", told(&refused));
+}
+
+#[test]
+fn files_of_one_name_are_told_apart_by_their_folders() {
+    let folder = folder();
+    let files = ["soft", "stiff"].map(|name| {
+        std::fs::create_dir(folder.path().join(name)).unwrap();
+        opened(&folder.path().join(name), "run.h5", &Recorded::new(&["A"], 9, 0))
+    });
+    let figures = draw(files.into(), &Options::default()).unwrap();
+    let force = figures.iter().find(|figure| figure.name == "force-A").unwrap();
+    assert!(force.svg.contains("soft/run, A") && force.svg.contains("stiff/run, A"));
+}
+
+#[test]
+fn a_section_of_a_few_turns_says_that_it_shows_no_pattern() {
+    let folder = folder();
+    let file = run(folder.path(), "four-bar-a");
+    let figures = folder.path().join("figures");
+    assert!(plot(&[&file], &figures, &["--only", "poincare"]).status.success());
+    let svg = std::fs::read_to_string(figures.join("poincare.svg")).unwrap();
+    assert!(svg.contains("1 passage, no pattern yet"), "{svg}");
+}

@@ -1,7 +1,7 @@
 //! Reads the keys of one TOML table, and notes what is missing, of the wrong type or unknown.
 
 use super::DefaultTaken;
-use crate::model::{Complaint, KeyPath, did_you_mean, in_brackets};
+use crate::model::{Complaint, KeyPath, OfMaterials, did_you_mean, in_brackets};
 use crate::scalar::Decimal;
 use toml_edit::{Item, Table, TableLike, Value};
 
@@ -73,6 +73,20 @@ impl FromItem for [Decimal; 2] {
 
     fn placeholder() -> Self {
         [Decimal::placeholder(), Decimal::placeholder()]
+    }
+}
+
+impl FromItem for OfMaterials {
+    const EXPECTED: &'static str = "a number or two [bearing, journal]";
+
+    fn from_item(item: &Item) -> Option<Self> {
+        let both = || Decimal::from_item(item).map(|both| [both.clone(), both]);
+        let [bearing, journal] = pair(item, number).or_else(both)?;
+        Some(OfMaterials { bearing, journal })
+    }
+
+    fn placeholder() -> Self {
+        OfMaterials { bearing: Decimal::placeholder(), journal: Decimal::placeholder() }
     }
 }
 

@@ -29,8 +29,8 @@ pub struct Clearance<S> {
     pub normal: NormalLaw<S>,
     /// Law of the tangential force, if there is friction.
     pub friction: Option<Ambrosio<S>>,
-    /// Whether a pulling contact force is cut to zero (ruling `tension`).
+    /// Whether a pulling contact force is cut to zero (key `tension`).
     pub cut_tension: bool,
-    /// Smallest rate that the damping is scaled by (m/s; ruling `minimum_impact_rate`).
+    /// Smallest rate that the damping is scaled by (m/s; key `minimum_impact_rate`).
     pub minimum_impact_rate: S,
 }

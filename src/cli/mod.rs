@@ -3,13 +3,17 @@
 mod certify;
 mod check;
 mod compare;
+mod completions;
 mod export;
 mod info;
+mod man;
+mod new;
 mod plot;
 mod report;
 mod run;
 mod signals;
 mod summary;
+mod version;
 
 use crate::case::{Case, Changes, Override};
 use clap::{Args, Parser, Subcommand};
@@ -20,7 +24,8 @@ use std::process::ExitCode;
 
 /// Reference simulation of planar mechanisms whose revolute joints have clearance.
 #[derive(Debug, Parser)]
-#[command(name = "freeplay", version, about, max_term_width = 100)]
+#[command(name = "freeplay", about, max_term_width = 100)]
+#[command(version = version::short(), long_version = version::long())]
 pub struct CommandLine {
     #[command(subcommand)]
     command: Command,
@@ -28,11 +33,13 @@ pub struct CommandLine {
 
 #[derive(Debug, Subcommand)]
 enum Command {
+    /// Write a commented case file to start from.
+    New(new::Arguments),
     /// Run a case and write its trajectory.
     Run(run::Arguments),
     /// Say how many digits of a run are true, against references in 71-digit arithmetic.
     Certify(certify::Arguments),
-    /// Say what a case describes: freedoms, constraints, stiffnesses, defaults, rulings.
+    /// Say what a case describes: freedoms, constraints, stiffnesses, defaults, decisions.
     Check(check::Arguments),
     /// Say what a result file holds and how it was made.
     Info(info::Arguments),
@@ -46,6 +53,10 @@ enum Command {
     Export(export::Arguments),
     /// Write a page on one or several runs: summary, charts, the mechanism in motion.
     Report(report::Arguments),
+    /// Print what has a shell complete commands and options.
+    Completions(completions::Arguments),
+    /// Write manual pages.
+    Man(man::Arguments),
 }
 
 /// A case file, and what the command line changes in it.
@@ -150,6 +161,7 @@ fn say(words: impl std::fmt::Display) {
 /// Parses the command line and does what it says.
 pub fn main() -> ExitCode {
     let done = match CommandLine::parse().command {
+        Command::New(arguments) => new::new(&arguments),
         Command::Run(arguments) => run::run(&arguments),
         Command::Certify(arguments) => certify::certify(&arguments),
         Command::Check(arguments) => check::check(&arguments),
@@ -159,6 +171,8 @@ pub fn main() -> ExitCode {
         Command::Plot(arguments) => plot::plot(&arguments),
         Command::Export(arguments) => export::export(&arguments),
         Command::Report(arguments) => report::report(&arguments),
+        Command::Completions(arguments) => completions::completions(&arguments),
+        Command::Man(arguments) => man::man(&arguments),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

@@ -41,6 +41,15 @@ pub struct Arguments {
     /// Width of the figures (mm); default: 90, the width of a journal's column, or 190, of both.
     #[arg(long, value_name = "MM", value_parser = width)]
     width: Option<f64>,
+    /// How letters are drawn: as text, or by their outlines, which look alike in every viewer.
+    #[arg(long, value_enum, default_value = "text")]
+    text: TextName,
+    /// What a run is called; once for each file, in their order.
+    #[arg(long, value_name = "NAME")]
+    label: Vec<String>,
+    /// Draw forces, torques and accelerations of all runs in one panel.
+    #[arg(long)]
+    overlay: bool,
     /// Replace figures that exist.
     #[arg(long)]
     force: bool,
@@ -62,6 +71,14 @@ enum OverName {
     Time,
     /// The angle of a drive.
     Angle,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum TextName {
+    /// Text, in Liberation Sans or a font as wide.
+    Text,
+    /// Outlines.
+    Outlines,
 }
 
 fn finite(text: &str) -> Result<f64, String> {
@@ -134,6 +151,9 @@ fn options(arguments: &Arguments) -> Options {
         until: arguments.until,
         section: arguments.section.to_radians(),
         width: arguments.width,
+        outlines: arguments.text == TextName::Outlines,
+        labels: arguments.label.clone(),
+        overlay: arguments.overlay,
     }
 }
 

@@ -30,7 +30,8 @@ pub(super) fn draw(runs: &Runs, figures: &mut Figures<'_>) -> Result<(), Error> 
         let ideal = runs.ideal().map(|run| acceleration(run, body)).transpose()?.flatten();
         let title = format!("Angular acceleration of {body}");
         let axis = Text::roman("Angular acceleration, ").and_italic("α");
-        let sheets = stack(&x, &axis, "rad/s^2", body, curves, ideal.as_ref());
+        let sheets =
+            stack(figures.options.overlay, &x, &axis, "rad/s^2", body, curves, ideal.as_ref());
         figures.add("angular-acceleration", Some(body), &title, sheets);
     }
     Ok(())

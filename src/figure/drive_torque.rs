@@ -17,7 +17,8 @@ pub(super) fn draw(runs: &Runs, figures: &mut Figures<'_>) -> Result<(), Error> 
         let ideal = runs.ideal().map(|run| torque(run, drive)).transpose()?.flatten();
         let title = format!("Torque of drive {drive}");
         let axis = Text::roman("Torque, ").and_italic("T");
-        let sheets = stack(&x, &axis, "N m", drive, &curves, ideal.as_ref());
+        let sheets =
+            stack(figures.options.overlay, &x, &axis, "N m", drive, &curves, ideal.as_ref());
         figures.add("torque", Some(drive), &title, sheets);
     }
     Ok(())

@@ -1,6 +1,9 @@
 //! The fonts in the program: figures need none of the system's.
 
+use super::decimate::Point;
+use super::svg::number;
 use resvg::usvg::fontdb::{Database, Source};
+use std::fmt::Write;
 use std::sync::Arc;
 
 /// Families of figures, most wanted first. The others have the same widths, for viewers of SVG
@@ -45,6 +48,61 @@ impl Font {
             face.glyph_hor_advance(glyph).map_or(0.0, f64::from)
         };
         text.chars().map(advance).sum::<f64>() / f64::from(face.units_per_em())
+    }
+
+    /// Adds the outlines of a text to the data of an SVG path: from a place on, at a size.
+    pub(super) fn outline(&self, text: &str, at: Point, size: f64, data: &mut String) {
+        let Ok(face) = ttf_parser::Face::parse(self.file, 0) else { return };
+        let scale = size / f64::from(face.units_per_em());
+        let mut pen = Pen { at, scale, data };
+        for letter in text.chars() {
+            let glyph = face.glyph_index(letter).unwrap_or_default();
+            face.outline_glyph(glyph, &mut pen);
+            pen.at[0] += scale * face.glyph_hor_advance(glyph).map_or(0.0, f64::from);
+        }
+    }
+}
+
+/// Writes the outline of a glyph as the data of an SVG path.
+struct Pen<'a> {
+    /// Where the glyph begins on its line.
+    at: Point,
+    /// Length of a unit of the font.
+    scale: f64,
+    data: &'a mut String,
+}
+
+impl Pen<'_> {
+    fn write(&mut self, command: char, points: &[[f32; 2]]) {
+        self.data.push(command);
+        for (k, [x, y]) in points.iter().enumerate() {
+            let x = number(self.at[0] + self.scale * f64::from(*x));
+            let y = number(self.at[1] - self.scale * f64::from(*y));
+            let space = if k == 0 { "" } else { " " };
+            let _ = write!(self.data, "{space}{x} {y}");
+        }
+    }
+}
+
+impl ttf_parser::OutlineBuilder for Pen<'_> {
+    fn move_to(&mut self, x: f32, y: f32) {
+        self.write('M', &[[x, y]]);
+    }
+
+    fn line_to(&mut self, x: f32, y: f32) {
+        self.write('L', &[[x, y]]);
+    }
+
+    fn quad_to(&mut self, x1: f32, y1: f32, x: f32, y: f32) {
+        self.write('Q', &[[x1, y1], [x, y]]);
+    }
+
+    fn curve_to(&mut self, x1: f32, y1: f32, x2: f32, y2: f32, x: f32, y: f32) {
+        self.write('C', &[[x1, y1], [x2, y2], [x, y]]);
+    }
+
+    fn close(&mut self) {
+        self.data.push('Z');
     }
 }
 

@@ -26,7 +26,7 @@ pub(super) fn draw(runs: &Runs, figures: &mut Figures<'_>) -> Result<(), Error> 
         };
         let title = format!("{words} in {joint}");
         let axis = Text::roman(format!("{words}, ")).and_text(&symbol);
-        let sheets = stack(&x, &axis, "N", joint, &curves, ideal.as_ref());
+        let sheets = stack(figures.options.overlay, &x, &axis, "N", joint, &curves, ideal.as_ref());
         figures.add("force", Some(joint), &title, sheets);
     }
     Ok(())

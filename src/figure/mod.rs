@@ -58,6 +58,14 @@ pub enum Error {
         /// Its end (s).
         until: f64,
     },
+    /// There are not as many labels as files.
+    #[error("each file needs one label, in their order: labels {labels}, files {files}")]
+    Labels {
+        /// Number of labels.
+        labels: usize,
+        /// Number of files.
+        files: usize,
+    },
     /// A drive's angle is asked for, and the file does not tell it.
     #[error("{} tells no angle of a drive: {what}", path.display())]
     NoDrive {
@@ -93,6 +101,12 @@ pub struct Options {
     pub section: f64,
     /// Width of the figures (mm); each has its own if left out.
     pub width: Option<f64>,
+    /// Whether letters are drawn by their outlines, not set as text.
+    pub outlines: bool,
+    /// Names of the runs, in the order of the files; none: those of their cases or files.
+    pub labels: Vec<String>,
+    /// Whether the histories of all runs share one panel.
+    pub overlay: bool,
 }
 
 /// Kinds of file.
@@ -190,7 +204,7 @@ impl Figures<'_> {
             sheet.width = self.options.width.unwrap_or(sheet.width);
             let wanted = if pages > 1 { format!("{base}-{}", page + 1) } else { base.clone() };
             let name = self.free_name(wanted);
-            let (svg, size) = sheet.draw(title, DESCRIPTION);
+            let (svg, size) = sheet.draw(title, DESCRIPTION, self.options.outlines);
             self.drawn.push(Figure { name, kind, title: title.to_owned(), svg, size });
         }
     }

@@ -2,11 +2,12 @@
 
 use super::Over;
 use super::decimate::Point;
-use super::palette::{IDEAL, RUN};
+use super::palette::{IDEAL, OVERLAID, RUN};
 use super::panel::{Axis, Choice, Mark, Panel, Sample, zero_line};
 use super::quantity::Unit;
 use super::runs::{Run, Runs};
 use super::sheet::{DOUBLE_COLUMN, Height, Sheet};
+use super::svg::Stroke;
 use super::text::Text;
 
 /// Most panels under each other.
@@ -48,8 +49,9 @@ pub(super) fn time_axis(runs: &Runs, over: Over) -> Axis {
 }
 
 /// Panels of one quantity of one part of the mechanism, a run each, with the ideal mechanism's curve in all of them. All have
-/// the same axes, so that heights compare.
+/// the same axes, so that heights compare. With `overlay` the runs share a panel.
 pub(super) fn stack(
+    overlay: bool,
     x: &Axis,
     title: &Text,
     unit: &str,
@@ -72,6 +74,10 @@ pub(super) fn stack(
         }
     };
     let legend = ideal.map(|ideal| (Sample::Line(IDEAL), Text::roman(&ideal.run)));
+    if overlay && curves.len() > 1 {
+        let page = |curves: &[Curve]| column(vec![overlaid(x, &y, part, curves, ideal)]);
+        return curves.chunks(OVERLAID.len()).map(page).collect();
+    }
     let page = |curves: &[Curve]| {
         let mut panels: Vec<Panel> = curves.iter().map(panel).collect();
         if let Some(first) = panels.first_mut() {
@@ -80,6 +86,22 @@ pub(super) fn stack(
         column(panels)
     };
     curves.chunks(MOST_ROWS).map(page).collect()
+}
+
+/// A panel with the curves of several runs; the first lies on top.
+fn overlaid(x: &Axis, y: &Axis, part: &str, curves: &[Curve], ideal: Option<&Curve>) -> Panel {
+    let of_runs: Vec<(&Curve, Stroke)> = curves.iter().zip(OVERLAID).collect();
+    let all = || of_runs.iter().copied().chain(ideal.map(|ideal| (ideal, IDEAL)));
+    let mut marks: Vec<Mark> = zero_line(y.range).into_iter().collect();
+    let drawn = of_runs.iter().rev().copied().chain(ideal.map(|ideal| (ideal, IDEAL)));
+    marks.extend(drawn.map(|(curve, stroke)| Mark::Curve(curve.points.clone(), stroke)));
+    Panel {
+        label: Text::roman(part),
+        legend: all().map(|(c, stroke)| (Sample::Line(stroke), Text::roman(&c.run))).collect(),
+        x: x.clone(),
+        y: y.clone(),
+        marks,
+    }
 }
 
 /// Panels under each other over one horizontal axis.

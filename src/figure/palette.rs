@@ -28,5 +28,14 @@ pub(super) const FRAME: Stroke = Stroke::solid(BLACK, 0.5);
 pub(super) const GUIDE: Stroke = Stroke::solid(GREY, 0.4);
 /// The curve of a run.
 pub(super) const RUN: Stroke = Stroke::solid(BLUE, 0.7);
+/// Curves of runs that share a panel, the first on top.
+pub(super) const OVERLAID: [Stroke; 6] = [
+    Stroke::solid(BLUE, 0.7),
+    Stroke::solid(VERMILLION, 1.1),
+    Stroke::solid(GREEN, 0.6),
+    Stroke::solid(ORANGE, 1.4),
+    Stroke::dashed(PURPLE, 0.8),
+    Stroke::dashed(SKY, 1.2),
+];
 /// The ideal mechanism.
 pub(super) const IDEAL: Stroke = Stroke::dashed(BLACK, 0.9);

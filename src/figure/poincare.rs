@@ -14,6 +14,9 @@ use std::f64::consts::TAU;
 /// A passage.
 const DOT: Dot = Dot { radius: 1.4, colour: BLUE };
 
+/// Passages that may show a pattern; fewer are a few dots.
+const PATTERN: usize = 30;
+
 /// Draws one figure with a panel for each joint of each run that has a drive.
 pub(super) fn draw(runs: &Runs, figures: &mut Figures<'_>) -> Result<(), Error> {
     let section = figures.options.section;
@@ -33,10 +36,27 @@ pub(super) fn draw(runs: &Runs, figures: &mut Figures<'_>) -> Result<(), Error> 
             let words = Text::italic("φ").and(format!(" = {angle}°"));
             first.legend = vec![(Sample::Dot(DOT), words)];
         }
+        for panel in sheet.rows.iter_mut().flatten().flatten() {
+            panel.label = std::mem::take(&mut panel.label).and_text(&too_few(&panel.marks));
+        }
     }
     let title = format!("Centres of the journals at drive angle {angle}°");
     figures.add("poincare", None, &title, sheets);
     Ok(())
+}
+
+/// Says of a panel with fewer passages than a pattern needs how many there are.
+fn too_few(marks: &[Mark]) -> Text {
+    let passages = marks.iter().filter_map(|mark| match mark {
+        Mark::Dots(points, _) => Some(points.len()),
+        _ => None,
+    });
+    match passages.sum() {
+        0 => Text::default(),
+        1 => Text::roman(": 1 passage, no pattern yet"),
+        few @ 2..PATTERN => Text::roman(format!(": {few} passages, no pattern yet")),
+        _ => Text::default(),
+    }
 }
 
 /// Times at which a drive passes an angle (rad) and the same a number of turns later (s).

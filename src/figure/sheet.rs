@@ -65,8 +65,9 @@ struct Layout {
 }
 
 impl Sheet {
-    /// Draws the sheet as an SVG file. Returns it with its size (mm).
-    pub fn draw(&self, title: &str, description: &str) -> (String, [f64; 2]) {
+    /// Draws the sheet as an SVG file, its letters as text or by their outlines. Returns it with
+    /// its size (mm).
+    pub fn draw(&self, title: &str, description: &str, outlines: bool) -> (String, [f64; 2]) {
         let layout = self.layout();
         let mut top = MARGIN;
         let mut frames = Vec::new();
@@ -76,7 +77,7 @@ impl Sheet {
             top += layout.heights[row] + self.below(row);
         }
         let size = [self.width, ((top + MARGIN) / POINTS_PER_MM * 100.0).ceil() / 100.0];
-        let mut svg = Svg::new(size, title, description);
+        let mut svg = Svg::new(size, title, description).outlined(outlines);
         for (row, top) in frames.iter().enumerate() {
             self.draw_row(&mut svg, &layout, row, *top);
         }
@@ -203,7 +204,7 @@ mod tests {
     fn draw(rows: Vec<Vec<Option<Panel>>>, shared_x: bool) -> String {
         let heights = vec![Height::Points(80.0); rows.len()];
         let sheet = Sheet { width: SINGLE_COLUMN, rows, heights, shared_x };
-        let (svg, size) = sheet.draw("Title", "Description");
+        let (svg, size) = sheet.draw("Title", "Description", false);
         assert_eq!(size[0], SINGLE_COLUMN);
         svg
     }

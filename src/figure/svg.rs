@@ -56,6 +56,9 @@ pub(super) enum Anchor {
 #[derive(Debug)]
 pub(super) struct Svg {
     text: String,
+    /// Whether letters are drawn by their outlines, so that they look alike where the fonts are
+    /// not there.
+    outlines: bool,
 }
 
 impl Svg {
@@ -72,7 +75,12 @@ impl Svg {
              <desc>{description}</desc>\n<rect width=\"{across}\" height=\"{down}\" \
              fill=\"#fff\"/>\n"
         );
-        Svg { text }
+        Svg { text, outlines: false }
+    }
+
+    /// Draws letters by their outlines, or sets them as text.
+    pub fn outlined(self, outlines: bool) -> Self {
+        Svg { outlines, ..self }
     }
 
     /// The finished file.
@@ -162,7 +170,11 @@ impl Svg {
 
     /// A text whose line runs through a point.
     pub fn text(&mut self, [x, y]: Point, anchor: Anchor, size: f64, text: &Text) {
-        let place = format!("x=\"{}\" y=\"{}\"", number(x), number(y));
+        let [x, y] = [number(x), number(y)];
+        let place = match self.outlines {
+            true => format!("transform=\"translate({x} {y})\""),
+            false => format!("x=\"{x}\" y=\"{y}\""),
+        };
         self.place_text(&place, anchor, size, text);
     }
 
@@ -176,6 +188,9 @@ impl Svg {
         if text.is_empty() {
             return;
         }
+        if self.outlines {
+            return self.place_outlines(place, anchor, size, text);
+        }
         let anchor = match anchor {
             Anchor::Start => "",
             Anchor::Middle => " text-anchor=\"middle\"",
@@ -187,10 +202,19 @@ impl Svg {
             "<text {place} font-size=\"{size_written}\"{anchor} xml:space=\"preserve\">{words}</text>"
         );
     }
+    fn place_outlines(&mut self, place: &str, anchor: Anchor, size: f64, text: &Text) {
+        let begin = match anchor {
+            Anchor::Start => 0.0,
+            Anchor::Middle => -0.5 * text.width(size),
+            Anchor::End => -text.width(size),
+        };
+        let (words, data) = (escape(&text.plain()), text.outlines(begin, size));
+        let _ = writeln!(self.text, "<path {place} aria-label=\"{words}\" d=\"{data}\"/>");
+    }
 }
 
 /// A length to a hundredth of a point, as short as can be.
-fn number(value: f64) -> String {
+pub(super) fn number(value: f64) -> String {
     hundredths((value * 100.0).round() as i64)
 }
 

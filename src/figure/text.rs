@@ -21,6 +21,12 @@ struct Span {
     level: Level,
 }
 
+impl Span {
+    fn font(&self) -> &'static Font {
+        if self.italic { &ITALIC } else { &ROMAN }
+    }
+}
+
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Level {
     Base,
@@ -92,15 +98,25 @@ impl Text {
     }
 
     /// The words without their style.
-    #[cfg(test)]
     pub fn plain(&self) -> String {
         self.0.iter().map(|span| span.text.as_str()).collect()
     }
 
     /// Width at a size, in the unit of the size.
     pub fn width(&self, size: f64) -> f64 {
-        let font = |span: &Span| -> &Font { if span.italic { &ITALIC } else { &ROMAN } };
-        self.0.iter().map(|span| size * span.level.size() * font(span).width(&span.text)).sum()
+        self.0.iter().map(|span| size * span.level.size() * span.font().width(&span.text)).sum()
+    }
+
+    /// The outlines of the letters as the data of an SVG path, from a place on the line on.
+    pub fn outlines(&self, begin: f64, size: f64) -> String {
+        let mut data = String::new();
+        let mut x = begin;
+        for span in &self.0 {
+            let (font, small) = (span.font(), size * span.level.size());
+            font.outline(&span.text, [x, size * span.level.drop()], small, &mut data);
+            x += small * font.width(&span.text);
+        }
+        data
     }
 
     /// The size at which it is no wider than the room, and no larger than `most`.
@@ -177,6 +193,23 @@ mod tests {
             "a&lt;b&gt;&amp;&quot;&#39;\
              <tspan font-style=\"italic\">&lt;/text&gt;\u{fffd}</tspan>"
         );
+    }
+
+    #[test]
+    fn outlines_go_from_letter_to_letter_as_wide_as_the_text() {
+        let text = Text::italic("F").and_subscript("N").and(" lI");
+        let data = text.outlines(3.0, 2048.0);
+        assert_eq!(data.matches('Z').count(), 4, "{data}");
+        // the first stroke of each letter; the last one stands before the end of the text
+        let begins: Vec<f64> = data
+            .split('M')
+            .skip(1)
+            .map(|rest| rest.split(' ').next().unwrap().parse().unwrap())
+            .collect();
+        assert!(begins.is_sorted(), "{begins:?}");
+        let end = 3.0 + text.width(2048.0);
+        assert!(begins[0] > 3.0 && end - 569.0 < begins[3] && begins[3] < end, "{begins:?}");
+        assert_eq!(Text::roman(" ").outlines(0.0, 9.0), "");
     }
 
     #[test]

@@ -4,8 +4,8 @@
 use super::{
     BodyDescription, ClearanceDescription, Complaint, Complaints, Description, DriveDescription,
     DriveKind, FrictionDescription, JointDescription, JointKind, KeyPath, LoadDescription,
-    LoadKind, NamedPoint, NormalDescription, NormalLawName, StartDescription, StiffnessDescription,
-    did_you_mean,
+    LoadKind, NamedPoint, NormalDescription, NormalLawName, OfMaterials, StartDescription,
+    StiffnessDescription, did_you_mean,
 };
 use crate::scalar::Decimal;
 use std::collections::HashSet;
@@ -178,14 +178,21 @@ fn check_normal(complaints: &mut Complaints, key: &KeyPath, normal: &NormalDescr
         complaints.require_positive(key.key("stiffness"), stiffness, "N/mⁿ");
     }
     check_material(complaints, key.key("young"), &normal.stiffness, &normal.young, "Pa");
-    if let Some(young) = &normal.young {
+    for young in of_each(&normal.young) {
         complaints.require_positive(key.key("young"), young, "Pa");
     }
     check_material(complaints, key.key("poisson"), &normal.stiffness, &normal.poisson, "");
-    if let Some(poisson) = &normal.poisson {
+    for poisson in of_each(&normal.poisson) {
         let range = "greater than -1 and at most 0.5";
         complaints.require(key.key("poisson"), poisson, "", range, |nu| nu > -1.0 && nu <= 0.5);
     }
+}
+
+/// A constant's values, bearing first; what is the same for both comes once.
+fn of_each(constant: &Option<OfMaterials>) -> impl Iterator<Item = &Decimal> {
+    constant.iter().flat_map(|OfMaterials { bearing, journal }| {
+        std::iter::once(bearing).chain((journal != bearing).then_some(journal))
+    })
 }
 
 /// A law that dissipates needs a restitution, one that does not takes none.
@@ -211,7 +218,7 @@ fn check_material(
     complaints: &mut Complaints,
     key: KeyPath,
     stiffness: &StiffnessDescription,
-    constant: &Option<Decimal>,
+    constant: &Option<OfMaterials>,
     unit: &str,
 ) {
     let by_material = match stiffness {

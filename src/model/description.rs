@@ -83,7 +83,7 @@ pub struct ClearanceDescription {
     pub friction: Option<FrictionDescription>,
 }
 
-/// What happens where a contact law gives a tensile force (ruling `tension`).
+/// What happens where a contact law gives a tensile force (key `tension`).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Tension {
     /// The law as printed, which may pull.
@@ -101,12 +101,21 @@ pub struct NormalDescription {
     pub restitution: Option<Decimal>,
     /// Generalized stiffness.
     pub stiffness: StiffnessDescription,
-    /// Young's modulus E of journal and bearing (Pa), for the Hertz stiffnesses.
-    pub young: Option<Decimal>,
-    /// Poisson's ratio ν of journal and bearing.
-    pub poisson: Option<Decimal>,
+    /// Young's modulus E (Pa), for the Hertz stiffnesses.
+    pub young: Option<OfMaterials>,
+    /// Poisson's ratio ν.
+    pub poisson: Option<OfMaterials>,
     /// Exponent n of the penetration.
     pub exponent: Decimal,
+}
+
+/// A constant of the two materials that touch; written as one number where they are the same.
+#[derive(Debug, Clone, PartialEq)]
+pub struct OfMaterials {
+    /// Of the bearing's.
+    pub bearing: Decimal,
+    /// Of the journal's.
+    pub journal: Decimal,
 }
 
 /// Names of the normal-force laws.

@@ -237,20 +237,23 @@ fn read_clearance<S: Scalar>(pair: Pair<S>, clearance: &ClearanceDescription) ->
 
 fn normal_law<S: Scalar>(normal: &NormalDescription, bearing: S, journal: S) -> NormalLaw<S> {
     let number =
-        |number: &Option<Decimal>| number.as_ref().map_or(S::one(), |number| number.value());
-    let material =
-        stiffness::Material { young: number(&normal.young), poisson: number(&normal.poisson) };
+        |number: Option<&Decimal>| number.map_or(S::one(), |number: &Decimal| number.value());
+    let material = |of: fn(&OfMaterials) -> &Decimal| stiffness::Material {
+        young: number(normal.young.as_ref().map(of)),
+        poisson: number(normal.poisson.as_ref().map(of)),
+    };
+    let materials = [material(|of| &of.bearing), material(|of| &of.journal)];
     let k = match &normal.stiffness {
-        StiffnessDescription::HertzPrinted => stiffness::hertz_printed(material, bearing, journal),
+        StiffnessDescription::HertzPrinted => stiffness::hertz_printed(materials, bearing, journal),
         StiffnessDescription::HertzInternal => {
-            stiffness::hertz_internal(material, bearing, journal)
+            stiffness::hertz_internal(materials, bearing, journal)
         }
         StiffnessDescription::Number(k) => k.value(),
     };
     let damping_weight = match normal.law {
         NormalLawName::Hertz => hertz::damping_weight(),
         NormalLawName::LankaraniNikravesh => {
-            lankarani_nikravesh::damping_weight(number(&normal.restitution))
+            lankarani_nikravesh::damping_weight(number(normal.restitution.as_ref()))
         }
     };
     NormalLaw::new(k, normal.exponent.value(), damping_weight)

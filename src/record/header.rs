@@ -25,7 +25,7 @@ pub struct Header {
     pub drives: Vec<String>,
     /// Version of SUNDIALS: attribute `sundials_version`.
     pub sundials_version: String,
-    /// More attributes of the root, with their names: tolerances, rulings.
+    /// More attributes of the root, with their names: tolerances, decisions.
     pub attributes: Vec<(String, Attribute)>,
     /// When the run began: attribute `started_utc`; [`utc`] writes it.
     pub started_utc: String,
@@ -38,7 +38,7 @@ pub struct Ending {
     pub outcome: Outcome,
     /// What the engine counted: attributes `solver_<name>`.
     pub counts: Vec<Count>,
-    /// How often each ruling was applied: attributes `ruling_<name>_count`.
+    /// How often each decision was called on: attributes `ruling_<name>_count`.
     pub rulings: Vec<Count>,
     /// When the run ended: attribute `finished_utc`; [`utc`] writes it.
     pub finished_utc: String,

@@ -24,4 +24,5 @@ pub(crate) use publish::Draft;
 pub use reader::{ResultFile, Table};
 pub use schema::{DATASETS, Dataset, Dimension, SCHEMA_VERSION, Source, Values, column_name};
 pub use seal::{Seal, sha256};
+pub use store::hdf5_version;
 pub use writer::Writer;

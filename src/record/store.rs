@@ -309,15 +309,20 @@ fn append_rows<T: H5Type>(
     handle.write_slice(view, ndarray::s![rows, ..])
 }
 
+/// Version of the HDF5 library that the program runs with, as "1.10.8".
+pub fn hdf5_version() -> String {
+    let (major, minor, patch) = hdf5::library_version();
+    format!("{major}.{minor}.{patch}")
+}
+
 /// Writes the attributes of the root that are known before the run.
 fn write_header(file: &File, header: &Header) -> hdf5::Result<()> {
-    let (major, minor, patch) = hdf5::library_version();
     let own = [
         ("Conventions", Attribute::from("CF-1.11")),
         ("title", Attribute::from(&*header.title)),
         ("schema_version", Attribute::from(SCHEMA_VERSION)),
         ("source", Attribute::from(concat!("freeplay ", env!("CARGO_PKG_VERSION")))),
-        ("hdf5_version", Attribute::from(format!("{major}.{minor}.{patch}"))),
+        ("hdf5_version", Attribute::from(hdf5_version())),
         ("sundials_version", Attribute::from(&*header.sundials_version)),
         ("case_name", Attribute::from(&*header.name)),
         ("case_toml", Attribute::from(&*header.case_text)),

@@ -41,7 +41,7 @@ pub(super) fn what_was_run(runs: &[Run<'_>], samples_in_page: &[usize]) -> Strin
     table.row("samples", samples);
     let clearances = runs.iter().map(clearances);
     table.row("clearances", clearances);
-    table.row("rulings", runs.iter().map(rulings));
+    table.row("decisions", runs.iter().map(rulings));
     for (attribute, name) in TOLD {
         if runs.iter().any(|run| run.file.attribute(attribute).is_some()) {
             table.row(name, runs.iter().map(|run| told(run, attribute)));
@@ -117,7 +117,7 @@ fn clearances(run: &Run<'_>) -> String {
     if lines.is_empty() { "none: ideal joints".to_owned() } else { lines.join("<br>") }
 }
 
-/// The rulings of each clearance, and how often each was applied.
+/// What was decided for each clearance where laws are silent, and how often each was applied.
 fn rulings(run: &Run<'_>) -> String {
     let all: Vec<(&str, String)> = run
         .file

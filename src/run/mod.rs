@@ -104,7 +104,7 @@ pub struct Progress {
     pub contacts: u64,
 }
 
-/// How often the rulings of the mechanism were called on.
+/// How often the decisions that clearances hold (DESIGN.md) were called on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct RulingCounts {
     /// Contacts that began slower than their `minimum_impact_rate`.

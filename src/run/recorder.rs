@@ -38,7 +38,7 @@ pub struct Contact {
     pub begin: f64,
     /// End (s); NaN while open.
     pub end: f64,
-    /// Penetration rate at the begin (m/s), before the ruling on slow approach.
+    /// Penetration rate at the begin (m/s), before a slow approach is raised.
     pub impact_rate: f64,
     /// Largest penetration (m).
     pub peak_penetration: f64,

@@ -223,6 +223,21 @@ const BAD: &[(&str, &str, &str)] = &[
         "joints.A.clearance.normal.poisson: must be greater than -1 and at most 0.5, is 0.6",
     ),
     (
+        "young = 207e9",
+        "young = [207e9, -110e9]",
+        "joints.A.clearance.normal.young: must be positive (Pa), is -110e9",
+    ),
+    (
+        "young = 207e9",
+        "young = [207e9, 110e9, 70e9]",
+        "joints.A.clearance.normal.young: must be a number or two [bearing, journal] (Pa), is an array of 3",
+    ),
+    (
+        "poisson = 0.3",
+        "poisson = [0.6, 0.3]",
+        "joints.A.clearance.normal.poisson: must be greater than -1 and at most 0.5, is 0.6",
+    ),
+    (
         "poisson = 0.3",
         "poisson = 0.3, exponent = 0.5",
         "joints.A.clearance.normal.exponent: must be at least 1, is 0.5",

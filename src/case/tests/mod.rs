@@ -5,7 +5,7 @@ mod changes;
 mod complaints;
 
 use super::*;
-use crate::model::{JointKind, NormalLawName, StiffnessDescription, Tension};
+use crate::model::{JointKind, Model, NormalLawName, StiffnessDescription, Tension};
 use crate::scalar::Decimal;
 use std::fs;
 use std::path::PathBuf;
@@ -111,6 +111,32 @@ fn integers_are_numbers_whatever_their_base() {
         let text = FOUR_BAR_A.replacen("mass    = 0.3 ", &format!("mass = {written}"), 1);
         assert_eq!(read(&text).unwrap().description.bodies[0].mass, Decimal::new(meant).unwrap());
     }
+}
+
+#[test]
+fn materials_are_one_or_two_with_the_bearing_s_first() {
+    let stiffness = |materials: &str| {
+        let text = FOUR_BAR_A.replacen("young = 207e9, poisson = 0.3", materials, 1);
+        Model::<f64>::new(&read(&text).unwrap().description).unwrap().clearances()[0]
+            .normal
+            .stiffness()
+    };
+    let steel = stiffness("young = 207e9, poisson = 0.3");
+    assert_eq!(stiffness("young = [207e9, 207e9], poisson = [0.3, 0.3]"), steel);
+    assert_eq!(stiffness("young = [207e9, 207e9], poisson = 0.3"), steel);
+    // (4/3) √(9/1900) / (0.91/207e9 + 0.8844/110e9), the contact of steel and bronze
+    let mixed = 7.379_004_134_935_793e9;
+    for materials in [
+        "young = [207e9, 110e9], poisson = [0.3, 0.34]",
+        "young = [110e9, 207e9], poisson = [0.34, 0.3]",
+    ] {
+        let found = stiffness(materials);
+        assert!((found - mixed).abs() < 4.0 * f64::EPSILON * mixed, "{materials}: {found}");
+    }
+    assert!(
+        stiffness("young = [207e9, 110e9], poisson = [0.34, 0.3]") < 0.992 * mixed,
+        "each has its own ν"
+    );
 }
 
 #[test]

@@ -59,10 +59,10 @@ pub enum Error {
         /// What the system says.
         source: Fault,
     },
-    /// Step follows step, but time stands still.
+    /// Step follows step, but time does not go on.
     #[error(
-        "time stands still: {steps} steps led from t = {since:e} s to {now:e} s only; the solution \
-         is not smooth there (chattering, a kink without an event), or the tolerances ask for more \
+        "the step size has fallen to nothing: {steps} steps led from t = {since:e} s to {now:e} s only; \
+         the solution is not smooth there (chattering, a kink without an event), or the tolerances ask for more \
          than the arithmetic holds: loosen relative_tolerance or absolute_tolerance"
     )]
     NoProgress {

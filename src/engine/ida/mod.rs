@@ -354,7 +354,7 @@ impl<Y: Dae> Engine<f64> for Ida<Y> {
 
     /// # Errors
     /// [`Error::Stopped`] if IDA gives up, [`Error::System`] if the system does,
-    /// [`Error::NoProgress`] if time stands still, [`Error::NotStarted`], [`Error::Backwards`].
+    /// [`Error::NoProgress`] if the step size has fallen to nothing, [`Error::NotStarted`], [`Error::Backwards`].
     ///
     /// # Panics
     /// With the system's own panic, if it panics.
@@ -480,7 +480,7 @@ fn check_step(name: &'static str, value: f64, sound: bool) -> Result<(), Error> 
     Err(Error::Option { name, value, must: "be a positive time (s)" })
 }
 
-/// Watches that time goes on. It lives through restarts, for a storm of events stands still too.
+/// Watches that time goes on. It lives through restarts, for in a storm of events it does not.
 #[derive(Debug, Default)]
 struct Progress {
     /// Steps since `mark`.

@@ -1,0 +1,88 @@
+//! `freeplay new KIND`
+
+use super::Failure;
+use crate::record::{self, Draft};
+use clap::ValueEnum;
+use std::path::PathBuf;
+
+/// Arguments of `new`.
+#[derive(Debug, clap::Args)]
+pub struct Arguments {
+    /// What the case describes.
+    #[arg(value_enum)]
+    kind: Kind,
+    /// Case file to write; default: the kind's name with .toml, in this folder.
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
+    /// Replace the file if it exists.
+    #[arg(long)]
+    force: bool,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Kind {
+    /// Crank-rocker, clearance between crank and coupler.
+    FourBar,
+    /// Watt's six-bar, clearance and friction in two joints.
+    SixBar,
+    /// A rod on a loose pin.
+    Pendulum,
+    /// Two rods with a loose elbow.
+    DoublePendulum,
+    /// A shaft that falls in its bearing.
+    JournalInBearing,
+}
+
+impl Kind {
+    /// Name of the file, and what is in it.
+    fn file(self) -> (&'static str, &'static str) {
+        match self {
+            Kind::FourBar => ("four-bar.toml", include_str!("new/four-bar.toml")),
+            Kind::SixBar => ("six-bar.toml", include_str!("new/six-bar.toml")),
+            Kind::Pendulum => ("pendulum.toml", include_str!("new/pendulum.toml")),
+            Kind::DoublePendulum => {
+                ("double-pendulum.toml", include_str!("new/double-pendulum.toml"))
+            }
+            Kind::JournalInBearing => {
+                ("journal-in-bearing.toml", include_str!("new/journal-in-bearing.toml"))
+            }
+        }
+    }
+}
+
+/// Writes a commented case file to start from.
+pub(super) fn new(arguments: &Arguments) -> Result<(), Failure> {
+    let (name, text) = arguments.kind.file();
+    let path = arguments.output.clone().unwrap_or_else(|| name.into());
+    let write = || -> Result<(), record::Error> {
+        Draft::create(&path, arguments.force)?.publish_bytes(text.as_bytes())
+    };
+    write().map_err(Failure::output)?;
+    let path = path.display();
+    super::print(format_args!(
+        "{path}: change it to yours; freeplay check {path} tells what it describes\n"
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::case::{Case, Changes};
+    use crate::simulate::Simulation;
+    use std::path::Path;
+
+    #[test]
+    fn every_kind_is_a_case_that_names_itself_and_can_be_assembled() {
+        for kind in Kind::value_variants() {
+            let (name, text) = kind.file();
+            let case = Case::from_text(Path::new(name), text, &Changes::default());
+            let case = case.unwrap_or_else(|error| panic!("{error}"));
+            assert_eq!(
+                Some(name.strip_suffix(".toml").unwrap()),
+                kind.to_possible_value().map(|value| value.get_name().to_owned()).as_deref()
+            );
+            assert!(!case.title.is_empty() && !text.contains("\nname"), "{name}");
+            Simulation::new(&case).unwrap_or_else(|error| panic!("{name}: {error}"));
+        }
+    }
+}

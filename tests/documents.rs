@@ -1,0 +1,334 @@
+//! What the documents say of the program is so: commands and options, datasets with their
+//! dimensions, links, versions; and every command of the tutorial runs.
+
+mod written;
+
+use clap::CommandFactory;
+use freeplay::case::{Case, Changes};
+use freeplay::cli::CommandLine;
+use freeplay::record::{DATASETS, Dimension};
+use serde_json::Value;
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use written::{python, root, said_by};
+
+fn read(path: &str) -> String {
+    std::fs::read_to_string(root().join(path)).unwrap_or_else(|error| panic!("{path}: {error}"))
+}
+
+/// The documents that users read.
+fn documents() -> Vec<PathBuf> {
+    let docs = std::fs::read_dir(root().join("docs")).unwrap();
+    let docs = docs.map(|entry| entry.unwrap().path());
+    let more = ["README.md", "DESIGN.md", "CHANGELOG.md", "python/README.md"];
+    let more = more.into_iter().map(|name| root().join(name));
+    docs.chain(more).filter(|path| path.extension().is_some_and(|end| end == "md")).collect()
+}
+
+/// What stands between backquotes.
+fn quoted(text: &str) -> Vec<&str> {
+    text.split('`').skip(1).step_by(2).collect()
+}
+
+#[test]
+fn format_md_tells_every_command_with_its_options() {
+    let text = read("docs/format.md");
+    let commands = text.split("\n## ").find(|part| part.starts_with("Commands")).unwrap();
+    let mut missing = Vec::new();
+    let program = CommandLine::command();
+    for command in program.get_subcommands() {
+        let name = command.get_name();
+        let row = commands.lines().find(|line| {
+            line.starts_with("| `freeplay ") && line.split([' ', '`']).any(|word| word == name)
+        });
+        let Some(row) = row else {
+            missing.push(format!("a row | `freeplay {name}` | … | … |"));
+            continue;
+        };
+        let told: Vec<&str> =
+            quoted(row).into_iter().filter(|word| word.starts_with("--")).collect();
+        let has: Vec<String> = command
+            .get_arguments()
+            .filter(|argument| argument.get_id() != "help" && !argument.is_hide_set())
+            .filter_map(|argument| Some(format!("--{}", argument.get_long()?)))
+            .collect();
+        missing.extend(
+            has.iter()
+                .filter(|option| !told.contains(&option.as_str()))
+                .map(|option| format!("{option} in the row of `freeplay {name}`")),
+        );
+        for option in told {
+            assert!(has.iter().any(|known| known == option), "freeplay {name} has no {option}");
+        }
+    }
+    assert!(missing.is_empty(), "docs/format.md lacks {missing:#?}");
+}
+
+/// Dimensions of each dataset that a table of docs/format.md has.
+fn documented_datasets() -> HashMap<String, String> {
+    let text = read("docs/format.md");
+    let part = text.split("\n## ").find(|part| part.starts_with("Result file")).unwrap();
+    let rows = part.lines().filter(|line| line.starts_with("| `"));
+    let mut datasets = HashMap::new();
+    for row in rows {
+        let cells: Vec<&str> = row.split('|').map(str::trim).collect();
+        for name in quoted(cells[1]) {
+            let earlier = datasets.insert(name.to_owned(), cells[2].to_owned());
+            assert_eq!(earlier, None, "docs/format.md has {name} twice");
+        }
+    }
+    datasets
+}
+
+#[test]
+fn format_md_tells_every_dataset_with_its_dimensions() {
+    let told = documented_datasets();
+    for dataset in &DATASETS {
+        let across = dataset.items().map_or(String::new(), |items| format!(", {}", items.name()));
+        let dimensions = format!("{}{across}", dataset.rows().name());
+        let found = told.get(dataset.name).map(String::as_str);
+        assert_eq!(found, Some(dimensions.as_str()), "{} in docs/format.md", dataset.name);
+    }
+    let text = read("docs/format.md");
+    for dimension in Dimension::ALL {
+        assert!(quoted(&text).contains(&dimension.name()), "{}", dimension.name());
+    }
+}
+
+/// Some datasets are known at the end of a run only, and stand in no table of the program.
+#[test]
+fn format_md_tells_the_datasets_of_certificates_and_tangents() {
+    let told = documented_datasets();
+    let folder = tempfile::tempdir().unwrap();
+    let run = folder.path().join("run.h5");
+    let mut command = Command::new(env!("CARGO_BIN_EXE_freeplay"));
+    command.args(["run", "cases/four-bar-a.toml", "--tangent", "--set", "run.duration=1e-3", "-o"]);
+    said_by(command.arg(&run).current_dir(root()));
+    let mut expected: Vec<String> = told.keys().cloned().collect();
+    expected.sort();
+    for file in [run, root().join("tests/data/certified/four-bar-a.h5")] {
+        for name in hdf5::File::open(&file).unwrap().member_names().unwrap() {
+            let scale = Dimension::ALL.into_iter().any(|dimension| dimension.name() == name);
+            assert!(scale || told.contains_key(&name), "docs/format.md lacks {name}");
+            expected.retain(|known| *known != name);
+        }
+    }
+    assert!(expected.is_empty(), "no run has {expected:?}, which docs/format.md tells");
+}
+
+#[test]
+fn links_lead_somewhere() {
+    for document in documents() {
+        let text = std::fs::read_to_string(&document).unwrap();
+        let links = text.split("](").skip(1).filter_map(|rest| rest.split(')').next());
+        for link in links.filter(|link| !link.contains("://") && !link.starts_with('#')) {
+            let path = document.parent().unwrap().join(link.split('#').next().unwrap());
+            assert!(path.exists(), "{}: there is no {link}", document.display());
+        }
+    }
+}
+
+#[test]
+fn files_that_are_named_are_there() {
+    let folders = ["docs/", "scripts/", "cases/", "src/", "tests/", "python/", "./scripts/"];
+    for document in documents() {
+        let text = std::fs::read_to_string(&document).unwrap();
+        for name in
+            quoted(&text).into_iter().filter(|name| folders.iter().any(|f| name.starts_with(f)))
+        {
+            let plain = name.chars().all(|c| c.is_ascii_alphanumeric() || "./_-".contains(c));
+            // cases are named without their ending, too
+            let there = root().join(name).exists() || root().join(format!("{name}.toml")).exists();
+            assert!(there || !plain, "{}: there is no {name}", document.display());
+        }
+    }
+}
+
+#[test]
+fn versions_agree() {
+    let version = env!("CARGO_PKG_VERSION");
+    assert!(read("python/pyproject.toml").contains(&format!("\nversion = \"{version}\"\n")));
+    assert!(read("CITATION.cff").contains(&format!("\nversion: {version}\n")));
+    let rust = env!("CARGO_PKG_RUST_VERSION");
+    assert!(read("README.md").matches(&format!("Rust {rust}")).count() >= 1);
+    assert!(read("README.md").contains(&format!("({rust} or newer")));
+}
+
+#[test]
+fn documents_use_plain_words() {
+    for document in documents() {
+        let text = std::fs::read_to_string(&document).unwrap().replace("ruling_", "");
+        for word in ["ruling", "time stands still"] {
+            assert!(!text.contains(word), "{}: {word}", document.display());
+        }
+    }
+}
+
+/// Blocks of a language in a document.
+fn blocks(text: &str, language: &str) -> Vec<String> {
+    let opening = format!("```{language}\n");
+    let blocks = text.split(opening.as_str()).skip(1);
+    blocks.filter_map(|rest| Some(rest.split("```").next()?.to_owned())).collect()
+}
+
+/// The folder of the program, before all others on the path.
+fn path() -> std::ffi::OsString {
+    let folder = Path::new(env!("CARGO_BIN_EXE_freeplay")).parent().unwrap().to_owned();
+    let others = std::env::var_os("PATH").unwrap_or_default();
+    std::env::join_paths(std::iter::once(folder).chain(std::env::split_paths(&others))).unwrap()
+}
+
+#[test]
+fn every_command_of_the_tutorial_runs() {
+    let tutorial = read("docs/tutorial.md");
+    let folder = tempfile::tempdir().unwrap();
+    let commands = blocks(&tutorial, "sh");
+    assert!(commands.len() > 8, "{commands:?}");
+    for line in commands.iter().flat_map(|block| block.lines()) {
+        let mut shell = Command::new("sh");
+        said_by(shell.args(["-c", line]).current_dir(folder.path()).env("PATH", path()));
+    }
+    for made in ["rocker.html", "figures/force-A.svg", "figures/journal-path.svg"] {
+        assert!(folder.path().join(made).exists(), "the tutorial names {made}");
+    }
+    for script in blocks(&tutorial, "python") {
+        let mut command = Command::new(python());
+        command.args(["-c", &script]).current_dir(folder.path()).env("PATH", path());
+        command.env("PYTHONPATH", root().join("python")).env("PYTHONDONTWRITEBYTECODE", "1");
+        let said = said_by(&mut command);
+        assert!(said.contains("peak_force"), "{said}");
+    }
+}
+
+#[test]
+fn every_command_of_the_readme_s_start_runs() {
+    let readme = read("README.md");
+    let commands = blocks(&readme, "sh").into_iter().find(|block| block.contains("freeplay new"));
+    let folder = tempfile::tempdir().unwrap();
+    for line in commands.unwrap().lines() {
+        let mut shell = Command::new("sh");
+        said_by(shell.args(["-c", line]).current_dir(folder.path()).env("PATH", path()));
+    }
+    for script in blocks(&readme, "python").into_iter().rev() {
+        let mut command = Command::new(python());
+        let script = script.replace(".plot()", ".max()");
+        command.args(["-c", &script]).current_dir(folder.path()).env("PATH", path());
+        command.env("PYTHONPATH", root().join("python")).env("PYTHONDONTWRITEBYTECODE", "1");
+        said_by(&mut command);
+    }
+}
+
+/// The schema of a case file at a path of keys; `None` where it knows no such key.
+fn schema_at<'a>(schema: &'a Value, keys: &[&str]) -> Option<&'a Value> {
+    let mut at = schema;
+    for key in keys {
+        let next = at["properties"].get(key).or_else(|| at.get("additionalProperties"));
+        at = next.filter(|next| !next.is_boolean())?;
+        if let Some(reference) = at["$ref"].as_str() {
+            at = &schema["$defs"][reference.strip_prefix("#/$defs/")?];
+        }
+    }
+    Some(at)
+}
+
+fn schema() -> Value {
+    serde_json::from_str(&read("docs/case.schema.json")).unwrap()
+}
+
+/// What the program says of a case with a key set to a word that it cannot know.
+fn complaint(key: &str) -> String {
+    let text = read("cases/four-bar-a-friction.toml")
+        + "\n[loads.gravity]\nkind = \"gravity\"\nacceleration = [0.0, -9.81]\n";
+    let set = vec![format!("{key}=zzzzzzzz").parse().unwrap()];
+    let read = Case::from_text(Path::new("case.toml"), &text, &Changes { set, ideal: false });
+    read.expect_err(key).to_string()
+}
+
+#[test]
+fn the_schema_of_cases_has_the_keys_that_the_program_reads() {
+    let schema = schema();
+    for table in [
+        "",
+        "ground",
+        "bodies.crank",
+        "joints.A",
+        "joints.A.clearance",
+        "joints.A.clearance.normal",
+        "joints.A.clearance.friction",
+        "drives.crank",
+        "loads.gravity",
+        "start.coupler",
+        "run",
+        "solver",
+    ] {
+        let keys: Vec<&str> = table.split('.').filter(|key| !key.is_empty()).collect();
+        let dot = if table.is_empty() { "" } else { "." };
+        let said = complaint(&format!("{table}{dot}zzzzzzzz"));
+        let known = said.split("known here: ").nth(1).unwrap_or_else(|| panic!("{said}"));
+        let mut known: Vec<&str> = known.lines().next().unwrap().split(", ").collect();
+        let in_schema = schema_at(&schema, &keys).unwrap()["properties"].as_object().unwrap();
+        let mut told: Vec<&str> = in_schema.keys().map(String::as_str).collect();
+        known.sort_unstable();
+        told.sort_unstable();
+        assert_eq!(told, known, "{table} in docs/case.schema.json, and the keys that are read");
+    }
+}
+
+#[test]
+fn the_schema_of_cases_has_the_words_that_the_program_reads() {
+    let schema = schema();
+    for key in [
+        "joints.A.kind",
+        "joints.A.clearance.tension",
+        "joints.A.clearance.normal.law",
+        "joints.A.clearance.normal.stiffness",
+        "joints.A.clearance.friction.law",
+        "drives.crank.kind",
+        "loads.gravity.kind",
+        "run.sampling",
+        "solver.engine",
+        "solver.norm",
+        "solver.absolute_tolerance",
+    ] {
+        let said = complaint(key);
+        let line = said.lines().find(|line| line.contains(key)).unwrap();
+        let must = line.split("must be ").nth(1).and_then(|rest| rest.split(", is ").next());
+        let known: Vec<&str> = must.unwrap().split('"').skip(1).step_by(2).collect();
+        let keys: Vec<&str> = key.split('.').collect();
+        let at = schema_at(&schema, &keys).unwrap();
+        let words = at.get("enum").unwrap_or_else(|| &at["oneOf"][1]["enum"]);
+        assert_eq!(words, &serde_json::json!(known), "{key} in docs/case.schema.json");
+    }
+}
+
+#[test]
+fn the_schema_of_cases_knows_every_key_of_every_case() {
+    let schema = schema();
+    for folder in ["cases", "tests/cases", "src/cli/new"] {
+        for entry in std::fs::read_dir(root().join(folder)).unwrap() {
+            let path = entry.unwrap().path();
+            let text = std::fs::read_to_string(&path).unwrap();
+            let case: toml_edit::DocumentMut = text.parse().unwrap();
+            check_keys(&schema, case.as_table(), &mut Vec::new(), &path);
+        }
+    }
+}
+
+/// Every key of a table, and of those in it, is in the schema.
+fn check_keys(
+    schema: &Value,
+    table: &dyn toml_edit::TableLike,
+    above: &mut Vec<String>,
+    case: &Path,
+) {
+    for (key, item) in table.iter() {
+        above.push(key.to_owned());
+        let keys: Vec<&str> = above.iter().map(String::as_str).collect();
+        assert!(schema_at(schema, &keys).is_some(), "{}: {above:?}", case.display());
+        if let Some(table) = item.as_table_like() {
+            check_keys(schema, table, above, case);
+        }
+        above.pop();
+    }
+}
