@@ -25,8 +25,10 @@ pub(super) struct Events {
     begin: Vec<Course>,
     /// Where it ended.
     end: Vec<Course>,
-    /// Functions beyond zero, not by an event: they have to fall first.
+    /// Functions beyond zero: they have to fall first.
     passed: Vec<bool>,
+    /// How they were watched since the last restart.
+    directions: Vec<Direction>,
     /// When each function rises in the step (s).
     rises: Vec<Option<f64>>,
     /// Looks at event functions within steps.
@@ -41,6 +43,7 @@ impl Events {
             begin: vec![Course::NONE; functions],
             end: vec![Course::NONE; functions],
             passed: vec![false; functions],
+            directions: vec![Direction::Off; functions],
             rises: vec![None; functions],
             looks: 0,
             unproven: 0,
@@ -54,12 +57,17 @@ impl Events {
 }
 
 impl<Y: Dae> Ida<Y> {
-    /// Takes in the event functions at a restart, where the system stands evaluated.
+    /// Takes in the event functions at a restart, where the system stands evaluated and `fired` is
+    /// still that of the step before. A function that has fired and is watched as before is beyond
+    /// its zero; one that has not fired, and rises from zero, is an event.
     pub(super) fn arm(&mut self) {
         for k in 0..self.events.begin.len() {
+            let direction = self.solver.system_ref().watches()[k].direction;
+            let same = std::mem::replace(&mut self.events.directions[k], direction) == direction;
             let Some(mut course) = self.rising_course(k) else { continue };
+            let done = self.fired[k] && same && course.value > 0.0;
             let beyond = course.value > course.noise;
-            self.events.passed[k] = beyond && course.rate <= 0.0;
+            self.events.passed[k] = done || (beyond && course.rate <= 0.0);
             if !beyond {
                 course.value = course.value.min(0.0);
             }

@@ -189,9 +189,9 @@ impl<Y: Dae> Ida<Y> {
     fn begin(&mut self) -> Result<(), Error> {
         self.phase = Phase::NotStarted;
         self.began.clone_from(&self.now);
-        self.fired.fill(false);
         self.evaluate()?;
         self.arm();
+        self.fired.fill(false);
         let n = self.now.q.len();
         let (system, now) = (self.solver.system_ref(), &self.now);
         self.quadrature.restart(now.time, system.powers(), &now.integrals);
@@ -366,13 +366,14 @@ impl<Y: Dae> Engine<f64> for Ida<Y> {
         if end < now || end.is_nan() {
             return Err(Error::Backwards { now, end });
         }
-        self.fired.fill(false);
         if end - now <= ROUNDINGS_AT_END * f64::EPSILON * (end.abs() + now.abs()) {
+            self.fired.fill(false);
             return self.creep(end);
         }
         if self.phase != Phase::Running {
             self.begin()?;
         }
+        self.fired.fill(false);
         // An error, or a panic of the system, leaves a state that no step can begin from.
         self.phase = Phase::NotStarted;
         let advance = self.step_ida(end)?;
