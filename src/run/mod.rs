@@ -4,6 +4,8 @@
 //! constraints, with accelerations, multipliers and forces solved afresh. At an event the state
 //! that the engine returns is projected, never polished, and the new mode is latched from it.
 
+mod extremes;
+mod inside;
 mod kinematic;
 mod peak;
 mod recorder;
@@ -13,6 +15,7 @@ mod touching;
 mod trajectory;
 mod window;
 
+pub use extremes::LEFT_OUT;
 pub use kinematic::{Assembled, kinematic};
 pub use recorder::*;
 pub use schedule::Schedule;
@@ -22,6 +25,8 @@ use crate::clearance::{EventSlot, Mode};
 use crate::dae::{Advance, Direction, Engine, Fault, Snapshot, State, System};
 use crate::mechanism::Mechanism;
 use crate::scalar::Scalar;
+use extremes::Tracker;
+use inside::End;
 use sampling::Mark;
 use std::ops::ControlFlow;
 use touching::{Contacts, Touching};
@@ -127,6 +132,12 @@ struct Run<'a, S: Scalar, E: Engine<S>, R> {
     touching: Vec<Option<Touching<S>>>,
     contacts: Contacts,
     peaks: Vec<Peak>,
+    /// Extremes of the present revolution; `None` where nobody keeps them.
+    tracker: Option<Box<Tracker>>,
+    /// Square of the fastest pace (rad²/s²) at the last step's begin, and of that within it.
+    paces: [f64; 2],
+    /// Ends of the last step, where it was sketched.
+    ends: [End<S>; 2],
     progress: Progress,
     segment: u64,
     counts: RulingCounts,
@@ -152,6 +163,10 @@ where
 {
     let start = engine.system().start().clone();
     let clearances = engine.system().modes().len();
+    let system = engine.system();
+    let tracker = recorder
+        .keeps_revolutions()
+        .then(|| Box::new(Tracker::new(system.measures(), system.revolution())));
     let mut run = Run {
         scratch: start.clone(),
         touching: vec![None; clearances],
@@ -165,6 +180,9 @@ where
         window: Window::new(clearances),
         contacts: Contacts::default(),
         peaks: Vec::new(),
+        tracker,
+        paces: [0.0; 2],
+        ends: End::both(&start),
         progress: Progress::default(),
         segment: 1,
         counts: RulingCounts::default(),
@@ -192,10 +210,12 @@ where
         while self.engine.now().time < end {
             let advance = self.engine.step(end).map_err(|source| self.stopped(source))?;
             self.progress.steps += 1;
+            self.arrive();
             if S::EPSILON < f64::EPSILON && advance == Advance::Stepped {
                 self.check_modes()?;
             }
             self.follow_contacts()?;
+            self.follow_extremes()?;
             self.sample(advance == Advance::Event)?;
             match advance {
                 Advance::Event => self.event()?,
@@ -250,7 +270,9 @@ where
     }
 
     fn restart(&mut self, at: &Snapshot<S>) -> Outcome<(), S, E, R> {
-        self.engine.restart(at).map_err(|source| self.stopped(source))
+        self.engine.restart(at).map_err(|source| self.stopped(source))?;
+        self.restart_extremes();
+        Ok(())
     }
 
     /// Projects the state in `scratch`; returns how far it was off.
@@ -365,6 +387,7 @@ where
             end: f64::NAN,
             impact_rate: mode.impact_rate.to_f64(),
             peak_penetration: rates.depth.to_f64().max(0.0),
+            peak_penetration_time: begin,
             peak_force: rates.force.to_f64(),
             peak_time: begin,
             dissipated: 0.0,
@@ -435,7 +458,7 @@ where
         while let Some(contact) = self.contacts.next(true) {
             self.recorder.contact(contact).map_err(Error::Recorder)?;
         }
-        Ok(())
+        self.close_extremes()
     }
 
     /// Force (N) that the tolerance makes of nothing, where a contact has this slope (N/m): a

@@ -1,6 +1,6 @@
 //! True extrema of penetration and force within a step.
 
-use super::recorder::{Peak, Recorder};
+use super::recorder::{Contact, Peak, Recorder};
 use super::{Mark, Outcome, Run};
 use crate::dae::Engine;
 use crate::mechanism::{ContactRates, Mechanism};
@@ -31,16 +31,18 @@ where
                 continue;
             };
             if begin.rate > S::zero() && end.rate <= S::zero() {
-                let (_, rates) = self.summit(k, begin, end, |at| (at.depth, at.rate))?;
-                self.deepest(k, rates.depth);
+                let (time, rates) = self.summit(k, begin, end, |at| (at.depth, at.rate))?;
+                self.deepest(k, time.to_f64(), rates.depth.to_f64());
             }
-            if begin.force_rate > S::zero() && end.force_rate <= S::zero() {
+            if rises(&begin) && end.force_rate <= S::zero() {
                 let (time, rates) = self.summit(k, begin, end, |at| (at.force, at.force_rate))?;
                 self.strongest(k, time.to_f64(), rates.force.to_f64());
                 self.marks.push(Mark { time, peak: Some((k, rates.force.to_f64())) });
             }
             self.mark_bend(&begin, &end);
-            self.deepest(k, end.depth);
+            let now = self.engine.now().time.to_f64();
+            self.deepest(k, now, end.depth.to_f64());
+            self.hardest(k, now, end.force.to_f64());
             let noise = self.noise(end.slope.to_f64());
             if let Some(touching) = self.touching[k].as_mut() {
                 touching.last = end;
@@ -51,21 +53,32 @@ where
         Ok(())
     }
 
-    fn deepest(&mut self, k: usize, depth: S) {
-        let number = self.touching[k].as_ref().map(|touching| touching.number);
-        if let Some(contact) = number.and_then(|number| self.contacts.get(number)) {
-            contact.peak_penetration = contact.peak_penetration.max(depth.to_f64());
+    /// The open contact, if clearance `k` is in one.
+    fn contact(&mut self, k: usize) -> Option<&mut Contact> {
+        let number = self.touching[k].as_ref()?.number;
+        self.contacts.get(number)
+    }
+
+    /// Takes a penetration (m) at a time (s) as a candidate for the contact's largest.
+    fn deepest(&mut self, k: usize, time: f64, depth: f64) {
+        if let Some(contact) = self.contact(k).filter(|contact| depth > contact.peak_penetration) {
+            (contact.peak_penetration, contact.peak_penetration_time) = (depth, time);
         }
     }
 
-    fn strongest(&mut self, k: usize, time: f64, force: f64) {
-        let Some(touching) = self.touching[k].as_mut() else { return };
-        touching.maximum(Peak { time, clearance: k, force });
-        if let Some(contact) = self.contacts.get(touching.number)
-            && force > contact.peak_force
-        {
+    /// Takes a force (N) at a time (s) as a candidate for the contact's largest.
+    fn hardest(&mut self, k: usize, time: f64, force: f64) {
+        if let Some(contact) = self.contact(k).filter(|contact| force > contact.peak_force) {
             (contact.peak_force, contact.peak_time) = (force, time);
         }
+    }
+
+    /// Takes note of a maximum of the force (N) at a time (s).
+    fn strongest(&mut self, k: usize, time: f64, force: f64) {
+        if let Some(touching) = &mut self.touching[k] {
+            touching.maximum(Peak { time, clearance: k, force });
+        }
+        self.hardest(k, time, force);
     }
 
     /// The time (s) within the last step at which a quantity of contact `k` is largest, and what
@@ -118,8 +131,15 @@ where
             landed.map_err(|source| self.stopped(source))?;
         }
         self.evaluate()?;
+        self.look_around();
         Ok(self.scratch.time)
     }
+}
+
+/// Whether the force of a contact rises: at the contact's very begin its rate is zero, or negative
+/// by rounding.
+fn rises<S: Scalar>(at: &ContactRates<S>) -> bool {
+    at.force_rate > S::zero() || (at.force <= S::zero() && at.rate > S::zero())
 }
 
 /// Where between 0 and `width` the cubic with these values and rates at its ends is largest; the
