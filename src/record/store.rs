@@ -248,7 +248,7 @@ fn named_scale(file: &File, dimension: Dimension, names: &[String]) -> hdf5::Res
     Ok(scale)
 }
 
-/// Makes a compressed dataset without rows, in chunks of so many; `width` is the number of values in a row, `None` where
+/// Makes a dataset without rows, in chunks of so many, compressed where they are long; `width` is the number of values in a row, `None` where
 /// the dataset has one dimension.
 fn create_growing<T: H5Type>(
     file: &File,
@@ -259,9 +259,10 @@ fn create_growing<T: H5Type>(
     let extents: Vec<Extent> =
         [Extent::resizable(0)].into_iter().chain(width.map(Extent::fixed)).collect();
     let chunk: Vec<usize> = [rows].into_iter().chain(width.map(|width| width.max(1))).collect();
-    file.new_dataset::<T>()
-        .shuffle()
-        .deflate(DEFLATE)
+    let dataset = file.new_dataset::<T>();
+    // compressing a few numbers takes longer than writing them
+    let dataset = if rows < CHUNK_ROWS { dataset } else { dataset.shuffle().deflate(DEFLATE) };
+    dataset
         .chunk(chunk)
         .obj_track_times(false)
         .attr_creation_order(AttrCreationOrder::Indexed)

@@ -235,11 +235,12 @@ impl Tracker {
     #[inline]
     fn comes_near(&self) -> bool {
         let [a, b, c] = [self.past(1), self.past(0), self.end()];
-        let growth = match self.known {
-            1 => 0.0,
-            _ => (c.time - b.time) / (b.time - a.time),
+        // after a restart nothing is known of how a measure bends: none is said to go on
+        let growth = (c.time - b.time) / (b.time - a.time);
+        let (growth, weight) = match self.known {
+            1 => (0.0, 2.0),
+            _ => (growth, CLEARLY * growth / (1.0 + growth)),
         };
-        let weight = CLEARLY * growth / (1.0 + growth);
         let mut least = [0.0; LANES];
         for (((a, b), c), (high, low)) in (lanes(&a.values).zip(lanes(&b.values)))
             .zip(lanes(&c.values))
