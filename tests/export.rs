@@ -44,7 +44,8 @@ fn expected(file: &ResultFile, table: TableName) -> Table {
         TableName::Contacts => (
             words(
                 "contact_clearance contact_begin contact_end contact_impact_rate \
-                 contact_peak_penetration contact_peak_force contact_peak_time contact_dissipated",
+                 contact_peak_penetration contact_peak_penetration_time contact_peak_force \
+                 contact_peak_time contact_dissipated",
             ),
             &[],
         ),

@@ -140,26 +140,55 @@ fn contacts_flights_and_dissipation_account_for_the_run() {
 }
 
 #[test]
-fn interpolated_extremes_of_a_run_with_contacts_are_as_good_as_they_say() {
+fn extremes_do_not_depend_on_the_samples() {
     let short = "run.duration=0.006";
-    let coarse = summary_of(&Run::of("four-bar-a", &[short, "run.sample_interval=5e-6"]));
-    let fine = summary_of(&Run::of("four-bar-a", &[short, "run.sample_interval=1e-7"]));
-    let mut interpolated = 0;
+    let coarse = summary_of(&Run::of("four-bar-a-friction", &[short, "run.sample_interval=1e-3"]));
+    let fine = Run::of("four-bar-a-friction", &[short, "run.sample_interval=1e-6"]);
+    let fine = summary_of(&fine);
+    let mut found = 0;
     for (quantity, tally) in &coarse.run.quantities {
         let name = quantity.name(&coarse.run.names);
         let finer = fine.run.of(&name).unwrap().total;
         for (a, b) in [(tally.total.largest, finer.largest), (tally.total.smallest, finer.smallest)]
         {
             let (Some(a), Some(b)) = (a, b) else { continue };
-            if a.basis == Basis::Interpolated {
-                let error = (a.value - b.value).abs();
-                let allowed = a.uncertainty.unwrap() + b.uncertainty.unwrap_or(0.0);
-                assert!(error <= allowed, "{name}: {a:?}, {b:?}");
-                interpolated += 1;
-            }
+            assert_eq!((a.basis, b.basis), (Basis::Peak, Basis::Peak));
+            let error = (a.value - b.value).abs();
+            assert!(error <= a.uncertainty.unwrap(), "{name}: {a:?}, {b:?}");
+            found += 1;
         }
     }
-    assert!(interpolated >= 8, "{interpolated} extremes were interpolated");
+    assert!(found > 30, "{found} extremes");
+}
+
+#[test]
+fn with_friction_a_joint_peaks_where_the_whole_of_its_force_does() {
+    let friction =
+        "joints.A.clearance.friction={law=\"ambrosio\", coefficient=0.5, v0=0.0, v1=8.0}";
+    let set = [friction, "run.duration=0.006", "run.sample_interval=1e-7"];
+    let run = Run::of("four-bar-a", &set);
+    let summary = summary_of(&run);
+    let [normal, tangential] =
+        ["normal_force.A", "tangential_force.A"].map(|name| run.file().column(name).unwrap());
+    let samples = normal.iter().zip(&tangential).map(|(n, t)| n.hypot(*t)).fold(0.0, f64::max);
+    let found = largest(&summary, "joint_force.A").value;
+    assert!(found >= samples && found < samples * (1.0 + 1e-3), "{found} N, sampled {samples} N");
+    assert!(largest(&summary, "normal_force.A").value < found);
+    assert!(summary.to_string().contains("tangential_force.A"));
+}
+
+#[test]
+fn the_time_of_the_deepest_penetration_is_its_own() {
+    let run = Run::of("four-bar-a", &["run.duration=0.006"]);
+    let json = summary_of(&run).to_json();
+    let deepest = &json["clearances"]["A"]["largest_penetration"];
+    let contacts = run.file().contacts().unwrap();
+    let depth = |contact: &&freeplay::run::Contact| contact.peak_penetration;
+    let contact = contacts.iter().max_by(|a, b| depth(a).total_cmp(&depth(b))).unwrap();
+    assert_eq!(deepest["value"], contact.peak_penetration);
+    assert_eq!(deepest["time"], contact.peak_penetration_time);
+    assert!(contact.begin < contact.peak_penetration_time);
+    assert!(contact.peak_penetration_time < contact.end);
 }
 
 #[test]
@@ -182,16 +211,15 @@ fn a_journal_that_circles_is_in_permanent_contact_and_has_no_revolutions() {
 }
 
 #[test]
-fn the_force_in_the_pivot_of_a_pendulum_is_interpolated_to_what_it_says() {
+fn the_force_in_the_pivot_of_a_pendulum_is_true_however_coarse_the_samples() {
     // m g (1 + 2 m l²/J) at the bottom
-    for (interval, close) in [("1e-3", 1e-9), ("1e-2", 1e-4), ("5e-2", 2e-2)] {
+    for interval in ["1e-3", "1e-2", "1.0"] {
         let summary =
             summary_of(&Run::of("pendulum", &[&format!("run.sample_interval={interval}")]));
         let found = largest(&summary, "joint_force.O");
         let error = (found.value - 12.2625).abs();
-        assert_eq!(found.basis, Basis::Interpolated);
-        let uncertainty = found.uncertainty.unwrap();
-        assert!(error <= uncertainty && uncertainty < close, "{interval}: {found:?}");
+        assert_eq!(found.basis, Basis::Peak);
+        assert!(error <= found.uncertainty.unwrap(), "{interval}: {found:?}");
         assert!(summary.turning.is_none());
         assert!(matches!(summary.reference, Ok(Reference::Itself)));
     }

@@ -309,6 +309,7 @@ mod tests {
             end: *end,
             impact_rate: 0.1,
             peak_penetration: 1e-6,
+            peak_penetration_time: 0.0,
             peak_force: 1.0,
             peak_time: 0.5 * (begin + end),
             dissipated: 0.0,
@@ -324,6 +325,7 @@ mod tests {
             events: events.collect(),
             contacts: contacts.iter().map(contact).collect(),
             peaks: Vec::new(),
+            revolutions: Vec::new(),
         }
     }
 

@@ -261,7 +261,8 @@ impl Reference {
     /// Leaves the first samples only, and of everything else what lies before the last of them. A
     /// contact that has not ended by then is left out: its largest force may lie behind.
     fn cut(&mut self, samples: usize) {
-        let Trajectory { samples: all, events, contacts, peaks } = &mut self.trajectory;
+        let Trajectory { samples: all, events, contacts, peaks, revolutions } =
+            &mut self.trajectory;
         all.truncate(samples);
         self.wrong.truncate(samples);
         self.growth.factors.truncate(samples);
@@ -269,6 +270,7 @@ impl Reference {
         events.retain(|event| event.time <= end);
         contacts.retain(|contact| contact.end <= end);
         peaks.retain(|peak| peak.time <= end);
+        revolutions.retain(|revolution| revolution.end <= end);
         self.growth.double_precision_ends =
             self.growth.double_precision_ends.filter(|time| *time <= end);
     }
@@ -329,6 +331,7 @@ mod tests {
             end: f64::from(k) + 0.8,
             impact_rate: 1.0,
             peak_penetration: 1e-6,
+            peak_penetration_time: 0.0,
             peak_force: 1.0,
             peak_time: f64::from(k) + 0.5,
             dissipated: 0.0,
@@ -341,6 +344,7 @@ mod tests {
             events: (0..5).map(|k| event(f64::from(k) + 0.2)).collect(),
             contacts: (0..5).map(contact).collect(),
             peaks: (0..5).map(peak).collect(),
+            revolutions: Vec::new(),
         };
         Reference {
             scales: Scales::of(&trajectory.samples, &sizes),
@@ -358,7 +362,7 @@ mod tests {
     fn tables_end_with_the_last_sample() {
         let mut reference = reference();
         reference.cut(3);
-        let Trajectory { samples, events, contacts, peaks } = &reference.trajectory;
+        let Trajectory { samples, events, contacts, peaks, .. } = &reference.trajectory;
         let lengths = [samples.len(), events.len(), contacts.len(), peaks.len()];
         assert_eq!(lengths, [3, 2, 2, 2]);
         assert_eq!((reference.wrong.len(), reference.growth.factors.len()), (3, 3));

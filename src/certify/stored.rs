@@ -208,6 +208,7 @@ pub(super) fn read(case: &Case, file: &ResultFile) -> Result<Reference, NotARefe
             events: file.events()?,
             contacts: file.contacts()?,
             peaks: file.peaks()?,
+            revolutions: file.revolutions()?,
         },
         wrong,
         scales,

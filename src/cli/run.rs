@@ -6,7 +6,7 @@ use crate::case::Case;
 use crate::certify::{self, CrossCheck, Disagreement, Tangent};
 use crate::mechanism::Observation;
 use crate::record::{self, Ending, Outcome, Writer, utc};
-use crate::run::{Contact, Event, Peak, Progress, Recorder, Trajectory};
+use crate::run::{Contact, Event, Peak, Progress, Recorder, Revolution, Trajectory};
 use crate::simulate::{self, Simulation, Statistics};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::path::PathBuf;
@@ -197,6 +197,14 @@ impl Recorder for Timed {
 
     fn peak(&mut self, peak: Peak) -> Result<(), record::Error> {
         self.writer.peak(peak)
+    }
+
+    fn keeps_revolutions(&self) -> bool {
+        true
+    }
+
+    fn revolution(&mut self, revolution: &Revolution) -> Result<(), record::Error> {
+        self.writer.revolution(revolution)
     }
 }
 

@@ -146,7 +146,11 @@ impl Column {
             Source::Clearance(value) => value(&observation.clearances[self.item]),
             Source::Joint(value) => value(&observation.joints[self.item]),
             Source::Drive => observation.drive_torques[self.item],
-            Source::Event(_) | Source::Contact(_) | Source::Peak(_) => f64::NAN,
+            Source::Event(_)
+            | Source::Contact(_)
+            | Source::Peak(_)
+            | Source::Revolution(_)
+            | Source::Extreme(..) => f64::NAN,
         }
     }
 }
@@ -173,7 +177,11 @@ impl Parts {
             Dimension::Joint => Some(&self.0.joints),
             Dimension::Clearance => Some(&self.0.clearances),
             Dimension::Drive => Some(&self.0.drives),
-            Dimension::Time | Dimension::Event | Dimension::Contact | Dimension::Peak => None,
+            Dimension::Time
+            | Dimension::Event
+            | Dimension::Contact
+            | Dimension::Peak
+            | Dimension::Revolution => None,
         }
     }
 

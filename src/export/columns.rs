@@ -56,8 +56,10 @@ pub struct Columns {
 impl Columns {
     /// The columns of a table of a file.
     pub fn of(file: &ResultFile, table: TableName) -> Self {
-        let datasets: Vec<&'static Dataset> =
-            DATASETS.iter().filter(|dataset| dataset.rows() == table.rows()).collect();
+        let datasets: Vec<&'static Dataset> = DATASETS
+            .iter()
+            .filter(|dataset| dataset.rows() == table.rows() && file.dataset(dataset.name).is_ok())
+            .collect();
         let columns = datasets.iter().flat_map(|dataset| {
             let items = dataset.items().map(|items| file.names(items));
             let names: Vec<String> = match items {

@@ -4,6 +4,7 @@ use super::over_time::{Curve, stack, time_axis};
 use super::runs::{Run, Runs};
 use super::text::Text;
 use super::{Error, Figures};
+use crate::mechanism::Measure;
 use crate::record::Dimension;
 
 /// Share of the largest angular acceleration of all bodies below which a body counts as turning
@@ -39,5 +40,6 @@ pub(super) fn draw(runs: &Runs, figures: &mut Figures<'_>) -> Result<(), Error> 
 
 fn acceleration(run: &Run, body: &str) -> Result<Option<Curve>, Error> {
     let Some(index) = run.index(Dimension::Body, body) else { return Ok(None) };
-    Ok(Some(Curve::of(run, run.samples("angular_acceleration")?.column(index))))
+    let values = run.samples("angular_acceleration")?.column(index);
+    Ok(Some(Curve::of_measure(run, values, Measure::AngularAcceleration, index)))
 }

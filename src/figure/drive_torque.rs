@@ -4,6 +4,7 @@ use super::over_time::{Curve, stack, time_axis};
 use super::runs::{Run, Runs};
 use super::text::Text;
 use super::{Error, Figures};
+use crate::mechanism::Measure;
 use crate::record::Dimension;
 
 /// Draws a figure for each drive.
@@ -26,5 +27,6 @@ pub(super) fn draw(runs: &Runs, figures: &mut Figures<'_>) -> Result<(), Error> 
 
 fn torque(run: &Run, drive: &str) -> Result<Option<Curve>, Error> {
     let Some(index) = run.index(Dimension::Drive, drive) else { return Ok(None) };
-    Ok(Some(Curve::of(run, run.samples("drive_torque")?.column(index))))
+    let values = run.samples("drive_torque")?.column(index);
+    Ok(Some(Curve::of_measure(run, values, Measure::DriveTorque, index)))
 }

@@ -6,6 +6,7 @@ use super::runs::{Run, Runs};
 use super::text::Text;
 use super::touching::{clearance, normal_force};
 use super::{Error, Figures};
+use crate::mechanism::Measure;
 use crate::record::Dimension;
 
 /// Draws a figure for each joint.
@@ -41,5 +42,5 @@ fn force(run: &Run, joint: &str) -> Result<Option<Curve>, Error> {
     let x = run.samples("joint_force_x")?.column(index);
     let y = run.samples("joint_force_y")?.column(index);
     let lengths = x.into_iter().zip(y).map(|(x, y)| x.hypot(y)).collect();
-    Ok(Some(Curve::of(run, lengths)))
+    Ok(Some(Curve::of_measure(run, lengths, Measure::JointForce, index)))
 }

@@ -9,6 +9,7 @@ use super::runs::{Run, Runs};
 use super::sheet::{DOUBLE_COLUMN, Height, Sheet};
 use super::svg::Stroke;
 use super::text::Text;
+use crate::mechanism::Measure;
 
 /// Most panels under each other.
 pub(super) const MOST_ROWS: usize = 6;
@@ -26,6 +27,22 @@ impl Curve {
     /// Values at the samples of a run.
     pub fn of(run: &Run, values: Vec<f64>) -> Self {
         let points = run.abscissa().iter().copied().zip(values).map(|(x, y)| [x, y]).collect();
+        Curve { run: run.name.clone(), points }
+    }
+
+    /// Values at the samples of a run, and the extremes that it found between them of a measure of
+    /// this item.
+    pub fn of_measure(run: &Run, values: Vec<f64>, measure: Measure, item: usize) -> Self {
+        let mut points: Vec<Point> =
+            run.times.iter().zip(values).map(|(time, value)| [*time, value]).collect();
+        for revolution in &run.revolutions {
+            let found =
+                [revolution.largest(measure).nth(item), revolution.smallest(measure).nth(item)];
+            let found = found.into_iter().flatten().filter(|found| run.shows(found.time));
+            points.extend(found.map(|found| [found.time, found.value]));
+        }
+        points.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        let points = points.into_iter().map(|[time, value]| [run.place(time), value]).collect();
         Curve { run: run.name.clone(), points }
     }
 }

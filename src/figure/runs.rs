@@ -4,7 +4,7 @@ use super::{Error, Options, Over};
 use crate::case::{Case, Changes};
 use crate::model::did_you_mean;
 use crate::record::{Dimension, ResultFile, Table};
-use crate::run::{Contact, Event, Peak};
+use crate::run::{Contact, Event, Peak, Revolution};
 use std::cell::RefCell;
 use std::collections::VecDeque;
 use std::ops::Range;
@@ -27,6 +27,8 @@ pub(super) struct Run {
     pub contacts: Vec<Contact>,
     /// All local maxima of normal forces.
     pub peaks: Vec<Peak>,
+    /// Extremes by revolution.
+    pub revolutions: Vec<Revolution>,
     window: Range<usize>,
     over: Over,
     /// Datasets read last: figures of several parts read the same ones again.
@@ -69,6 +71,7 @@ impl Run {
             events: file.events()?,
             contacts: file.contacts()?,
             peaks: file.peaks()?,
+            revolutions: file.revolutions()?,
             window,
             over: options.over,
             read: RefCell::default(),

@@ -4,6 +4,7 @@
 mod balance;
 mod dae;
 mod layout;
+mod measure;
 mod modes;
 mod observation;
 mod observe;
@@ -12,6 +13,7 @@ mod project;
 mod start;
 mod system;
 
+pub use measure::{Measure, Measures};
 pub use observation::*;
 pub use project::OpenJoint;
 pub use system::{ContactRates, SingularPosition};
@@ -23,6 +25,7 @@ use crate::model::{Complaint, Model};
 use crate::plane::{Motion, Pose, Vector, Wrench};
 use crate::scalar::Scalar;
 use layout::{Layout, Role};
+use measure::ForceSource;
 
 /// A mechanism with its modes, evaluated at one state at a time.
 #[derive(Debug, Clone)]
@@ -44,6 +47,10 @@ pub struct Mechanism<S> {
     coordinate_scales: Vec<f64>,
     velocity_scales: Vec<f64>,
     length: f64,
+    /// Where the force of each joint stands.
+    force_sources: Vec<ForceSource>,
+    /// Mobility of each clearance (1/kg).
+    mobilities: Vec<f64>,
     now: Evaluation<S>,
 }
 
@@ -148,6 +155,8 @@ impl<S: Scalar> Mechanism<S> {
             coordinate_scales: Vec::new(),
             velocity_scales: Vec::new(),
             length: 1.0,
+            force_sources: measure::force_sources(&model, &layout),
+            mobilities: measure::mobilities(&model, &layout),
             model,
             layout,
         };

@@ -45,7 +45,7 @@ pub struct Contacts {
     pub longest_contact: Option<Stretch>,
     /// The longest flight.
     pub longest_flight: Option<Stretch>,
-    /// The deepest penetration (m), with the time at which its contact began.
+    /// The deepest penetration (m).
     pub deepest: Option<At>,
     /// The fastest impact (m/s).
     pub fastest: Option<At>,
@@ -89,7 +89,7 @@ impl Contacts {
             longest_contact: longest(stretches.iter().copied()),
             longest_flight: longest(flights(&stretches, end).into_iter()),
             deepest: largest(
-                its().map(|contact| At { value: contact.peak_penetration, time: contact.begin }),
+                its().map(|c| At { value: c.peak_penetration, time: c.peak_penetration_time }),
             ),
             fastest: largest(its().map(impact)),
             dissipated: its().map(|contact| contact.dissipated).filter(|x| x.is_finite()).sum(),
@@ -162,6 +162,7 @@ mod tests {
             end,
             impact_rate: begin + 1.0,
             peak_penetration: 1e-6,
+            peak_penetration_time: begin + 0.1,
             peak_force: 1.0,
             peak_time: begin,
             dissipated: 0.25,

@@ -1,10 +1,11 @@
 //! Extremes of every quantity of a run: of a result file, or of a case run on the spot.
 //!
-//! A mechanism without freedom is not sampled but evaluated, so that its extremes are true. The
-//! force of a joint with clearance comes from the peaks that the run found between its samples.
-//! Everything else is interpolated between samples, and says by how much it may be off.
+//! A mechanism without freedom is not sampled but evaluated, so that its extremes are true to
+//! rounding. Those of any other run were found while it went on, whatever its samples. Files of
+//! programs that did not keep them tell the extremes of their samples, and of normal forces the
+//! peaks.
 
-use super::refine::{maximum, stands_out, take_samples};
+use super::refine::{maximum, stands_out};
 use super::tally::{Basis, Extreme, Tally};
 use super::{Error, Quantity, Revolutions};
 use crate::case::{Case, Changes};
@@ -12,7 +13,7 @@ use crate::dae::Fault;
 use crate::mechanism::{Mechanism, Observation};
 use crate::model::Names;
 use crate::record::ResultFile;
-use crate::run::{Assembled, Contact, Event, Peak, Recorder};
+use crate::run::{Assembled, Contact, Event, Peak, Recorder, Revolution};
 use crate::simulate::Simulation;
 use std::convert::Infallible;
 use std::ops::ControlFlow;
@@ -102,20 +103,17 @@ impl RunExtremes {
         {
             return Self::of_assembled(assembled, end, parts);
         }
-        let breaks: Vec<f64> = file.events()?.iter().map(|event| event.time).collect();
+        let revolutions = file.revolutions()?;
+        let friction = revolutions.is_empty() && has_friction(file)?;
         let mut quantities = Vec::new();
         for quantity in Quantity::all(&names) {
             let mut tally = Tally::new(parts, quantity.is_signed());
-            let values = values_of(file, quantity)?;
-            let clearance = match quantity {
-                Quantity::JointForce(joint) => {
-                    names.clearances.iter().position(|name| *name == names.joints[joint])
-                }
-                _ => None,
-            };
-            match clearance {
-                Some(k) => take_contact_force(&mut tally, file, k, &times, &values)?,
-                None => take_samples(&mut tally, &times, &values, &breaks),
+            for (k, revolution) in revolutions.iter().enumerate() {
+                tally.take_found(k, revolution, quantity);
+            }
+            if revolutions.is_empty() {
+                take_samples(&mut tally, &times, &values_of(file, quantity)?);
+                take_peaks(&mut tally, file, quantity, friction)?;
             }
             quantities.push((quantity, tally));
         }
@@ -152,39 +150,45 @@ fn values_of(file: &ResultFile, quantity: Quantity) -> Result<Vec<f64>, Error> {
             let (x, y) = (column("joint_force_x", joint)?, column("joint_force_y", joint)?);
             Ok(x.iter().zip(&y).map(|(x, y)| x.hypot(*y)).collect())
         }
-        Quantity::DriveTorque(drive) => column("drive_torque", drive),
-        Quantity::AngularAcceleration(body) => column("angular_acceleration", body),
+        quantity => column(quantity.dataset(), quantity.measure().1),
     }
 }
 
-/// Takes the force of a joint with clearance: samples, and the peaks that the run found. Their
-/// normal force becomes the whole by the friction of the nearest sample in contact.
-fn take_contact_force(
+/// Takes the samples of a curve.
+fn take_samples(tally: &mut Tally, times: &[f64], values: &[f64]) {
+    for (&time, &value) in times.iter().zip(values) {
+        tally.take(Extreme::new(value, time, Basis::Sample));
+    }
+}
+
+/// Whether any sample of a file has a tangential force.
+fn has_friction(file: &ResultFile) -> Result<bool, Error> {
+    Ok(file.table("tangential_force")?.values.iter().any(|force| *force != 0.0))
+}
+
+/// Takes the peaks of normal forces that a run found, in a file without extremes by revolution.
+/// With friction the force of the joint is larger, and nobody knows by how much.
+fn take_peaks(
     tally: &mut Tally,
     file: &ResultFile,
-    clearance: usize,
-    times: &[f64],
-    values: &[f64],
+    quantity: Quantity,
+    friction: bool,
 ) -> Result<(), Error> {
-    let normal = file.table("normal_force")?.column(clearance);
-    let tangential = file.table("tangential_force")?.column(clearance);
-    let friction = |time: f64| {
-        let after = times.partition_point(|sample| *sample < time);
-        let beside = [after.checked_sub(1), Some(after)].into_iter().flatten();
-        let touching = beside.filter(|k| normal.get(*k).is_some_and(|normal| *normal != 0.0));
-        let near =
-            touching.min_by(|a, b| (times[*a] - time).abs().total_cmp(&(times[*b] - time).abs()));
-        near.map_or(0.0, |k| tangential[k] / normal[k])
+    let name = |joint: usize| &file.joints()[joint];
+    let (clearance, basis) = match quantity {
+        Quantity::JointForce(joint) => (
+            file.clearances().iter().position(|clearance| clearance == name(joint)),
+            if friction { Basis::Sample } else { Basis::Peak },
+        ),
+        Quantity::NormalForce(clearance) => (Some(clearance), Basis::Peak),
+        _ => (None, Basis::Peak),
     };
+    let Some(clearance) = clearance else { return Ok(()) };
     let peaks = file.peaks()?.into_iter().map(|peak| (peak.clearance, peak.time, peak.force));
     let contacts = file.contacts()?.into_iter();
     let contacts = contacts.map(|c| (c.clearance, c.peak_time, c.peak_force));
     for (_, time, force) in peaks.chain(contacts).filter(|(k, ..)| *k == clearance) {
-        let force = force.abs() * 1_f64.hypot(friction(time));
-        tally.take(Extreme::new(force, time, Basis::Peak));
-    }
-    for (&time, &value) in times.iter().zip(values) {
-        tally.take(Extreme::new(value, time, Basis::Sample));
+        tally.take(Extreme::new(force, time, basis));
     }
     Ok(())
 }
@@ -233,25 +237,20 @@ struct Recording {
     names: Names,
     quantities: Vec<Quantity>,
     end: f64,
-    times: Vec<f64>,
-    values: Vec<Vec<f64>>,
+    tallies: Vec<Tally>,
 }
 
 impl Recording {
     fn new(mechanism: &Mechanism<f64>, end: f64) -> Self {
         let names = mechanism.model().names().clone();
         let quantities = Quantity::all(&names);
-        let values = vec![Vec::new(); quantities.len()];
-        Recording { names, quantities, end, times: Vec::new(), values }
+        let tallies = quantities.iter().map(|quantity| Tally::new(None, quantity.is_signed()));
+        Recording { tallies: tallies.collect(), names, quantities, end }
     }
 
     fn into_extremes(self) -> RunExtremes {
-        let quantities = self.quantities.into_iter().zip(&self.values).map(|(quantity, values)| {
-            let mut tally = Tally::new(None, quantity.is_signed());
-            take_samples(&mut tally, &self.times, values, &[]);
-            (quantity, tally)
-        });
-        RunExtremes { names: self.names, quantities: quantities.collect() }
+        let quantities = self.quantities.into_iter().zip(self.tallies).collect();
+        RunExtremes { names: self.names, quantities }
     }
 }
 
@@ -260,9 +259,9 @@ impl Recorder for Recording {
 
     fn sample(&mut self, observation: &Observation) -> Result<(), Infallible> {
         if observation.time <= self.end {
-            self.times.push(observation.time);
-            for (values, quantity) in self.values.iter_mut().zip(&self.quantities) {
-                values.push(quantity.of(observation));
+            for (tally, quantity) in self.tallies.iter_mut().zip(&self.quantities) {
+                let value = quantity.of(observation);
+                tally.take(Extreme::new(value, observation.time, Basis::Sample));
             }
         }
         Ok(())
@@ -277,6 +276,20 @@ impl Recorder for Recording {
     }
 
     fn peak(&mut self, _: Peak) -> Result<(), Infallible> {
+        Ok(())
+    }
+
+    fn keeps_revolutions(&self) -> bool {
+        true
+    }
+
+    /// Of a revolution that goes on beyond the end only the samples count.
+    fn revolution(&mut self, revolution: &Revolution) -> Result<(), Infallible> {
+        if revolution.end <= self.end {
+            for (tally, quantity) in self.tallies.iter_mut().zip(&self.quantities) {
+                tally.take_found(0, revolution, *quantity);
+            }
+        }
         Ok(())
     }
 }

@@ -21,7 +21,7 @@ impl fmt::Display for Summary {
             return writeln!(f, "\nThe file has no samples.");
         }
         section(f, "Joint forces, largest", self.forces())?;
-        section(f, "Drive torques and angular accelerations", self.signed())?;
+        section(f, "Torques and accelerations", self.signed())?;
         if let Some(turning) = &self.turning {
             let what = if self.has_ratios() { ", ratios" } else { "" };
             let parts = turning.revolutions;
@@ -95,7 +95,16 @@ impl Summary {
 
     fn signed(&self) -> Table {
         let mut rows = Vec::new();
+        let friction = |clearance| {
+            let its = |of: &Quantity| *of == Quantity::TangentialForce(clearance);
+            let found = self.run.quantities.iter().find(|(of, _)| its(of));
+            found.is_some_and(|(_, tally)| tally.total.magnitude() > Some(0.0))
+        };
         for (quantity, tally) in self.of_kind(true) {
+            // without friction the normal force is the joint's force
+            if matches!(quantity, Quantity::NormalForce(clearance) if !friction(clearance)) {
+                continue;
+            }
             let extremes = tally.total;
             let reference = self.reference_of(quantity).unwrap_or_default();
             let ratios = self.ratios(quantity, &extremes);
@@ -166,16 +175,16 @@ impl Summary {
 
     /// A line a revolution: torques and angular accelerations.
     fn signed_in(&self, parts: Revolutions) -> Table {
-        let signed = self.of_kind(true);
-        let heads = signed.iter().flat_map(|(quantity, _)| {
-            let names = &self.run.names;
-            let name = match *quantity {
-                Quantity::DriveTorque(drive) => format!("torque {}", names.drives[drive]),
-                Quantity::AngularAcceleration(body) => format!("accel. {}", names.bodies[body]),
-                Quantity::JointForce(joint) => format!("force {}", names.joints[joint]),
-            };
-            [format!("{name} +"), "−".to_owned()]
-        });
+        let names = &self.run.names;
+        let name = |quantity: Quantity| match quantity {
+            Quantity::DriveTorque(drive) => Some(format!("torque {}", names.drives[drive])),
+            Quantity::AngularAcceleration(body) => Some(format!("accel. {}", names.bodies[body])),
+            _ => None,
+        };
+        let mut signed = self.of_kind(true);
+        signed.retain(|(quantity, _)| name(*quantity).is_some());
+        let heads = signed.iter().filter_map(|(quantity, _)| name(*quantity));
+        let heads = heads.flat_map(|name| [format!("{name} +"), "−".to_owned()]);
         by_revolution(parts, heads.collect(), |k| {
             signed.iter().flat_map(|(of, tally)| self.in_span(*of, &tally.revolutions[k])).collect()
         })
@@ -226,15 +235,17 @@ impl Summary {
         writeln!(f)?;
         for (basis, words) in [
             (Basis::Evaluated, "exact: the mechanism was evaluated there, true to rounding"),
-            (Basis::Peak, "peak: found by the run between its samples, as accurate as the run"),
-            (Basis::Interpolated, "±: interpolated between samples, and what that may be off by"),
+            (
+                Basis::Peak,
+                "peak: found while the run went on, whatever its samples; as accurate as the run",
+            ),
             (Basis::Sample, "sample: of the samples; between them it may be exceeded"),
         ] {
             if bases.contains(&basis) {
                 writeln!(f, "{words}")?;
             }
         }
-        if self.unresolved_contacts > 0 {
+        if self.unresolved_contacts > 0 && bases.contains(&Basis::Sample) {
             let count = self.unresolved_contacts;
             writeln!(
                 f,
@@ -333,11 +344,9 @@ fn value(extreme: Option<Extreme>) -> String {
 /// How an extreme is known.
 fn known(extreme: Option<Extreme>) -> String {
     let Some(extreme) = extreme else { return NONE.to_owned() };
-    match (extreme.basis, extreme.uncertainty) {
-        (Basis::Evaluated, _) => "exact".to_owned(),
-        (Basis::Interpolated, Some(uncertainty)) => format!("± {}", figures(uncertainty, 2)),
-        (basis, Some(uncertainty)) => format!("{}, ± {}", basis.name(), figures(uncertainty, 2)),
-        (basis, None) => basis.name().to_owned(),
+    match extreme.basis {
+        Basis::Evaluated => "exact".to_owned(),
+        basis => basis.name().to_owned(),
     }
 }
 

@@ -1,17 +1,16 @@
 //! Largest and smallest values, in a whole run and in each revolution.
 
-use super::Revolutions;
+use super::{Quantity, Revolutions};
+use crate::run::{Extremum, LEFT_OUT, Revolution};
 
 /// How an extreme value is known.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Basis {
     /// The mechanism was evaluated there: to rounding.
     Evaluated,
-    /// The run found it, between its samples: to the accuracy of the run.
+    /// The run found it while it went on, whatever its samples: to the accuracy of the run.
     Peak,
-    /// Interpolated between samples.
-    Interpolated,
-    /// The extreme of the samples.
+    /// The extreme of the samples: between them it may be exceeded by any amount.
     Sample,
 }
 
@@ -21,7 +20,6 @@ impl Basis {
         match self {
             Basis::Evaluated => "evaluated",
             Basis::Peak => "peak",
-            Basis::Interpolated => "interpolated",
             Basis::Sample => "sample",
         }
     }
@@ -36,7 +34,7 @@ pub struct Extreme {
     pub time: f64,
     /// How it is known.
     pub basis: Basis,
-    /// By how much it may be off for want of samples, in the quantity's unit; `None` where that
+    /// By how much the run's own trajectory may exceed it, in the quantity's unit; `None` where that
     /// is nothing, or cannot be told.
     pub uncertainty: Option<f64>,
 }
@@ -46,7 +44,17 @@ impl Extreme {
     pub fn new(value: f64, time: f64, basis: Basis) -> Self {
         Extreme { value, time, basis, uncertainty: None }
     }
+
+    /// An extreme that the run found in a span in which the largest magnitude is this.
+    pub fn found(found: Extremum, magnitude: f64) -> Self {
+        let Extremum { value, time } = found;
+        Extreme { value, time, basis: Basis::Peak, uncertainty: Some(FOUND * magnitude) }
+    }
 }
+
+/// What the search of a run may leave out of an extreme, and rounding and drift off the
+/// constraints beside it, of the largest magnitude of its revolution.
+const FOUND: f64 = 10.0 * LEFT_OUT;
 
 /// The largest and the smallest value over a span; `None` if there was no number in it.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -113,6 +121,24 @@ impl Tally {
             self.revolutions[before].take(candidate, self.signed);
             if after != before {
                 self.revolutions[after].take(candidate, self.signed);
+            }
+        }
+    }
+}
+
+impl Tally {
+    /// Takes what a run found of a quantity in revolution `k`.
+    pub fn take_found(&mut self, k: usize, revolution: &Revolution, quantity: Quantity) {
+        let (measure, item) = quantity.measure();
+        let largest = revolution.largest(measure).nth(item);
+        let smallest = revolution.smallest(measure).nth(item).filter(|_| self.signed);
+        let both = || largest.into_iter().chain(smallest);
+        let magnitude = both().map(|found| found.value.abs()).fold(0.0, f64::max);
+        for found in both().filter(|found| found.value.is_finite() && found.time.is_finite()) {
+            let found = Extreme::found(found, magnitude);
+            self.total.take(found, self.signed);
+            if let Some(extremes) = self.revolutions.get_mut(k) {
+                extremes.take(found, self.signed);
             }
         }
     }

@@ -1,9 +1,12 @@
 //! Reading result files.
 
-use super::schema::{DATASETS, Dataset, Dimension, SCHEMA_VERSION, column_name};
+use super::schema::{
+    DATASETS, Dataset, Dimension, Part, SCHEMA_VERSION, Side, Source, column_name,
+};
 use super::{Attribute, Error, LibraryError};
+use crate::mechanism::{Measure, Measures};
 use crate::model::did_you_mean;
-use crate::run::{Contact, Event, EventKind, Peak};
+use crate::run::{Contact, Event, EventKind, Extremum, Peak, Revolution};
 use hdf5::{File, IndexType, IterationOrder, MinorErrorCode};
 use ndarray::{Array2, s};
 use std::io::{Error as SystemError, ErrorKind};
@@ -284,6 +287,11 @@ impl ResultFile {
             "contact_peak_time",
             "contact_dissipated",
         ])?;
+        // files of older programs do not have it
+        let deepest = match self.dataset("contact_peak_penetration_time") {
+            Ok(dataset) => self.table(dataset.name)?.values,
+            Err(_) => vec![f64::NAN; begin.len()],
+        };
         (0..begin.len())
             .map(|k| {
                 Ok(Contact {
@@ -292,6 +300,7 @@ impl ResultFile {
                     end: end[k],
                     impact_rate: impact_rate[k],
                     peak_penetration: peak_penetration[k],
+                    peak_penetration_time: deepest[k],
                     peak_force: peak_force[k],
                     peak_time: peak_time[k],
                     dissipated: dissipated[k],
@@ -310,6 +319,57 @@ impl ResultFile {
                 Ok(Peak { time: time[k], clearance, force: force[k] })
             })
             .collect()
+    }
+
+    /// Extremes by revolution; none in files of programs that did not keep them.
+    pub fn revolutions(&self) -> Result<Vec<Revolution>, Error> {
+        if self.length(Dimension::Revolution) == 0 {
+            return Ok(Vec::new());
+        }
+        let [begin, end] = self.tables(["revolution_begin", "revolution_end"])?;
+        let measures = Measures {
+            bodies: self.bodies().len(),
+            clearances: self.clearances().len(),
+            drives: self.drives().len(),
+            joints: self.joints().len(),
+        };
+        let none = Extremum { value: f64::NAN, time: f64::NAN };
+        let row = |(begin, end): (&f64, &f64)| Revolution {
+            begin: *begin,
+            end: *end,
+            measures,
+            largest: vec![none; measures.len()],
+            smallest: vec![none; measures.signed()],
+        };
+        let mut all: Vec<Revolution> = begin.iter().zip(&end).map(row).collect();
+        for dataset in DATASETS.iter().filter(|dataset| self.file.link_exists(dataset.name)) {
+            if let Source::Extreme(measure, side, part) = dataset.source {
+                self.read_extremes(dataset, (measure, side, part), &mut all)?;
+            }
+        }
+        Ok(all)
+    }
+
+    fn read_extremes(
+        &self,
+        dataset: &'static Dataset,
+        (measure, side, part): (Measure, Side, Part),
+        all: &mut [Revolution],
+    ) -> Result<(), Error> {
+        let Table { values, width, .. } = self.table(dataset.name)?;
+        for (row, values) in all.iter_mut().zip(values.chunks_exact(width.max(1))) {
+            for (place, value) in row.measures.places(measure).zip(values) {
+                let extremum = match side {
+                    Side::Largest => &mut row.largest[place],
+                    Side::Smallest => &mut row.smallest[place],
+                };
+                match part {
+                    Part::Value => extremum.value = *value,
+                    Part::Time => extremum.time = *value,
+                }
+            }
+        }
+        Ok(())
     }
 
     /// The values of several datasets of one dimension.
@@ -368,6 +428,10 @@ impl ResultFile {
 
     fn read_length(&self, dimension: Dimension) -> Result<usize, Error> {
         let name = dimension.name();
+        if dimension == Dimension::Revolution && !self.file.link_exists(name) {
+            // a file of a program that did not keep extremes by revolution
+            return Ok(0);
+        }
         let (path, missing) = (self.path.clone(), format!("it has no dimension \"{name}\""));
         match self.file.dataset(name).map(|scale| scale.shape()) {
             Ok(shape) if shape.len() == 1 => Ok(shape[0]),

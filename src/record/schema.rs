@@ -1,7 +1,9 @@
 //! What a result file holds: one table for the writer, the reader and whoever lists columns.
 
-use crate::mechanism::{BodyObservation, ClearanceObservation, JointObservation, Observation};
-use crate::run::{Contact, Event, Peak};
+use crate::mechanism::{
+    BodyObservation, ClearanceObservation, JointObservation, Measure, Observation,
+};
+use crate::run::{Contact, Event, Peak, Revolution};
 
 /// Version of the layout; it grows when a name is dropped or changes its meaning.
 pub const SCHEMA_VERSION: i64 = 1;
@@ -25,11 +27,13 @@ pub enum Dimension {
     Contact,
     /// Peaks of normal forces.
     Peak,
+    /// Revolutions of the first drive; one, the whole run, where no drive turns.
+    Revolution,
 }
 
 impl Dimension {
     /// All, in the order in which they stand in a file.
-    pub const ALL: [Dimension; 8] = [
+    pub const ALL: [Dimension; 9] = [
         Dimension::Time,
         Dimension::Body,
         Dimension::Joint,
@@ -38,6 +42,7 @@ impl Dimension {
         Dimension::Event,
         Dimension::Contact,
         Dimension::Peak,
+        Dimension::Revolution,
     ];
 
     /// Name of the dimension and of its scale.
@@ -51,6 +56,7 @@ impl Dimension {
             Dimension::Event => "event",
             Dimension::Contact => "contact",
             Dimension::Peak => "peak",
+            Dimension::Revolution => "revolution",
         }
     }
 
@@ -65,6 +71,7 @@ impl Dimension {
             Dimension::Event => "index of the event",
             Dimension::Contact => "index of the contact",
             Dimension::Peak => "index of the peak of a normal force",
+            Dimension::Revolution => "index of the revolution of the first drive",
         }
     }
 }
@@ -99,6 +106,28 @@ pub enum Source {
     Contact(fn(&Contact) -> f64),
     /// A value of each peak of a normal force.
     Peak(fn(&Peak) -> f64),
+    /// A value of each revolution.
+    Revolution(fn(&Revolution) -> f64),
+    /// An extreme of each body, joint, clearance or drive in each revolution.
+    Extreme(Measure, Side, Part),
+}
+
+/// Which extreme.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Side {
+    /// The largest value.
+    Largest,
+    /// The smallest value, of what has a sign.
+    Smallest,
+}
+
+/// What of an extreme.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Part {
+    /// The value.
+    Value,
+    /// Its time.
+    Time,
 }
 
 /// A dataset of the result file.
@@ -117,12 +146,13 @@ pub struct Dataset {
 }
 
 impl Dataset {
-    /// The dimension that grows: samples, events, contacts or peaks.
+    /// The dimension that grows: samples, events, contacts, peaks or revolutions.
     pub const fn rows(&self) -> Dimension {
         match self.source {
             Source::Event(_) => Dimension::Event,
             Source::Contact(_) => Dimension::Contact,
             Source::Peak(_) => Dimension::Peak,
+            Source::Revolution(_) | Source::Extreme(..) => Dimension::Revolution,
             _ => Dimension::Time,
         }
     }
@@ -134,6 +164,14 @@ impl Dataset {
             Source::Clearance(_) => Some(Dimension::Clearance),
             Source::Joint(_) => Some(Dimension::Joint),
             Source::Drive => Some(Dimension::Drive),
+            Source::Extreme(measure, ..) => Some(match measure {
+                Measure::AccelerationX | Measure::AccelerationY | Measure::AngularAcceleration => {
+                    Dimension::Body
+                }
+                Measure::NormalForce | Measure::TangentialForce => Dimension::Clearance,
+                Measure::DriveTorque => Dimension::Drive,
+                Measure::JointForce => Dimension::Joint,
+            }),
             _ => None,
         }
     }
@@ -171,9 +209,21 @@ const fn flag(
     Dataset { name, unit: "1", long_name, values: Values::Flag(meanings), source }
 }
 
+const fn extreme(
+    name: &'static str,
+    unit: &'static str,
+    long_name: &'static str,
+    measure: Measure,
+    side: Side,
+    part: Part,
+) -> Dataset {
+    real(name, unit, long_name, Source::Extreme(measure, side, part))
+}
+
 /// Every dataset but the index scales, in the order in which they stand in a file.
-pub static DATASETS: [Dataset; 45] = {
-    use Source::{Body, Clearance, Contact, Drive, Event, Joint, Peak, Sample};
+pub static DATASETS: [Dataset; 74] = {
+    use Measure as M;
+    use Source::{Body, Clearance, Contact, Drive, Event, Joint, Peak, Revolution, Sample};
     [
         real("time", "s", "time", Sample(|o| o.time)),
         real("position_x", "m", "x of the mass centre, fixed frame", Body(|b| b.position[0])),
@@ -334,6 +384,12 @@ pub static DATASETS: [Dataset; 45] = {
             Contact(|c| c.peak_penetration),
         ),
         real(
+            "contact_peak_penetration_time",
+            "s",
+            "time of the contact's largest penetration",
+            Contact(|c| c.peak_penetration_time),
+        ),
+        real(
             "contact_peak_force",
             "N",
             "largest normal force of the contact",
@@ -354,6 +410,216 @@ pub static DATASETS: [Dataset; 45] = {
         real("peak_time", "s", "time of the local maximum of a normal force", Peak(|p| p.time)),
         index("peak_clearance", "index of the peak's clearance", Peak(|p| p.clearance as f64)),
         real("peak_force", "N", "normal force at its local maximum", Peak(|p| p.force)),
+        real("revolution_begin", "s", "begin of the revolution", Revolution(|r| r.begin)),
+        real("revolution_end", "s", "end of the revolution or of the run", Revolution(|r| r.end)),
+        extreme(
+            "acceleration_x_largest",
+            "m/s^2",
+            "largest x of the mass centre's acceleration of the revolution",
+            M::AccelerationX,
+            Side::Largest,
+            Part::Value,
+        ),
+        extreme(
+            "acceleration_x_largest_time",
+            "s",
+            "time of the largest x of the mass centre's acceleration of the revolution",
+            M::AccelerationX,
+            Side::Largest,
+            Part::Time,
+        ),
+        extreme(
+            "acceleration_x_smallest",
+            "m/s^2",
+            "smallest x of the mass centre's acceleration of the revolution",
+            M::AccelerationX,
+            Side::Smallest,
+            Part::Value,
+        ),
+        extreme(
+            "acceleration_x_smallest_time",
+            "s",
+            "time of the smallest x of the mass centre's acceleration of the revolution",
+            M::AccelerationX,
+            Side::Smallest,
+            Part::Time,
+        ),
+        extreme(
+            "acceleration_y_largest",
+            "m/s^2",
+            "largest y of the mass centre's acceleration of the revolution",
+            M::AccelerationY,
+            Side::Largest,
+            Part::Value,
+        ),
+        extreme(
+            "acceleration_y_largest_time",
+            "s",
+            "time of the largest y of the mass centre's acceleration of the revolution",
+            M::AccelerationY,
+            Side::Largest,
+            Part::Time,
+        ),
+        extreme(
+            "acceleration_y_smallest",
+            "m/s^2",
+            "smallest y of the mass centre's acceleration of the revolution",
+            M::AccelerationY,
+            Side::Smallest,
+            Part::Value,
+        ),
+        extreme(
+            "acceleration_y_smallest_time",
+            "s",
+            "time of the smallest y of the mass centre's acceleration of the revolution",
+            M::AccelerationY,
+            Side::Smallest,
+            Part::Time,
+        ),
+        extreme(
+            "angular_acceleration_largest",
+            "rad/s^2",
+            "largest angular acceleration of the revolution",
+            M::AngularAcceleration,
+            Side::Largest,
+            Part::Value,
+        ),
+        extreme(
+            "angular_acceleration_largest_time",
+            "s",
+            "time of the largest angular acceleration of the revolution",
+            M::AngularAcceleration,
+            Side::Largest,
+            Part::Time,
+        ),
+        extreme(
+            "angular_acceleration_smallest",
+            "rad/s^2",
+            "smallest angular acceleration of the revolution",
+            M::AngularAcceleration,
+            Side::Smallest,
+            Part::Value,
+        ),
+        extreme(
+            "angular_acceleration_smallest_time",
+            "s",
+            "time of the smallest angular acceleration of the revolution",
+            M::AngularAcceleration,
+            Side::Smallest,
+            Part::Time,
+        ),
+        extreme(
+            "normal_force_largest",
+            "N",
+            "largest normal force of the revolution",
+            M::NormalForce,
+            Side::Largest,
+            Part::Value,
+        ),
+        extreme(
+            "normal_force_largest_time",
+            "s",
+            "time of the largest normal force of the revolution",
+            M::NormalForce,
+            Side::Largest,
+            Part::Time,
+        ),
+        extreme(
+            "normal_force_smallest",
+            "N",
+            "smallest normal force of the revolution",
+            M::NormalForce,
+            Side::Smallest,
+            Part::Value,
+        ),
+        extreme(
+            "normal_force_smallest_time",
+            "s",
+            "time of the smallest normal force of the revolution",
+            M::NormalForce,
+            Side::Smallest,
+            Part::Time,
+        ),
+        extreme(
+            "tangential_force_largest",
+            "N",
+            "largest tangential force of the revolution",
+            M::TangentialForce,
+            Side::Largest,
+            Part::Value,
+        ),
+        extreme(
+            "tangential_force_largest_time",
+            "s",
+            "time of the largest tangential force of the revolution",
+            M::TangentialForce,
+            Side::Largest,
+            Part::Time,
+        ),
+        extreme(
+            "tangential_force_smallest",
+            "N",
+            "smallest tangential force of the revolution",
+            M::TangentialForce,
+            Side::Smallest,
+            Part::Value,
+        ),
+        extreme(
+            "tangential_force_smallest_time",
+            "s",
+            "time of the smallest tangential force of the revolution",
+            M::TangentialForce,
+            Side::Smallest,
+            Part::Time,
+        ),
+        extreme(
+            "joint_force_largest",
+            "N",
+            "largest magnitude of the joint's force, friction included, of the revolution",
+            M::JointForce,
+            Side::Largest,
+            Part::Value,
+        ),
+        extreme(
+            "joint_force_largest_time",
+            "s",
+            "time of the largest magnitude of the joint's force, friction included, of the revolution",
+            M::JointForce,
+            Side::Largest,
+            Part::Time,
+        ),
+        extreme(
+            "drive_torque_largest",
+            "N m",
+            "largest drive torque of the revolution",
+            M::DriveTorque,
+            Side::Largest,
+            Part::Value,
+        ),
+        extreme(
+            "drive_torque_largest_time",
+            "s",
+            "time of the largest drive torque of the revolution",
+            M::DriveTorque,
+            Side::Largest,
+            Part::Time,
+        ),
+        extreme(
+            "drive_torque_smallest",
+            "N m",
+            "smallest drive torque of the revolution",
+            M::DriveTorque,
+            Side::Smallest,
+            Part::Value,
+        ),
+        extreme(
+            "drive_torque_smallest_time",
+            "s",
+            "time of the smallest drive torque of the revolution",
+            M::DriveTorque,
+            Side::Smallest,
+            Part::Time,
+        ),
     ]
 };
 

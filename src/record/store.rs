@@ -14,6 +14,9 @@ use std::path::{Path, PathBuf};
 /// Rows of a chunk of the file, and of a block.
 pub(super) const CHUNK_ROWS: usize = 4096;
 
+/// Rows of a chunk along revolutions: most runs have few.
+const CHUNK_REVOLUTIONS: usize = 64;
+
 /// Effort of the compression, 0 to 9.
 const DEFLATE: u8 = 4;
 
@@ -34,6 +37,11 @@ impl Block {
     pub fn new(dimension: Dimension) -> Self {
         Block { dimension, rows: 0, columns: vec![Vec::new(); datasets_of(dimension).count()] }
     }
+}
+
+/// Rows of a chunk along a dimension that grows.
+fn chunk_rows(dimension: Dimension) -> usize {
+    if dimension == Dimension::Revolution { CHUNK_REVOLUTIONS } else { CHUNK_ROWS }
 }
 
 /// The datasets that grow with a dimension.
@@ -81,9 +89,12 @@ impl Store {
             let handle = match names(header, dimension) {
                 Some(names) => named_scale(&self.file, dimension, names)?,
                 None if dimension == Dimension::Time => {
-                    create_growing::<f64>(&self.file, dimension.name(), None)?
+                    create_growing::<f64>(&self.file, dimension.name(), CHUNK_ROWS, None)?
                 }
-                None => create_growing::<i32>(&self.file, dimension.name(), None)?,
+                None => {
+                    let rows = chunk_rows(dimension);
+                    create_growing::<i32>(&self.file, dimension.name(), rows, None)?
+                }
             };
             set_scale(&handle, dimension.name())?;
             handle.new_attr::<i32>().create("_Netcdf4Dimid")?.write_scalar(&(id as i32))?;
@@ -103,7 +114,14 @@ impl Store {
                 self.scale(Dimension::Time).clone()
             } else {
                 let Dataset { name, unit, long_name, values, .. } = *dataset;
-                let handle = create_dataset(&self.file, name, unit, long_name, values, width)?;
+                let handle = create_dataset(
+                    &self.file,
+                    name,
+                    unit,
+                    long_name,
+                    values,
+                    (chunk_rows(dataset.rows()), width),
+                )?;
                 attach_scale(&handle, self.scale(dataset.rows()), 0)?;
                 if let Some(items) = dataset.items() {
                     attach_scale(&handle, self.scale(items), 1)?;
@@ -147,7 +165,14 @@ impl Store {
             return Err(format!("{name} has {length} values for {rows} rows").into());
         }
         let Series { name, unit, long_name, stored, .. } = *series;
-        let handle = create_dataset(&self.file, name, unit, long_name, stored, None)?;
+        let handle = create_dataset(
+            &self.file,
+            name,
+            unit,
+            long_name,
+            stored,
+            (chunk_rows(series.along), None),
+        )?;
         attach_scale(&handle, self.scale(series.along), 0)?;
         write_values(&handle, stored, None, 0..rows, &series.values)
     }
@@ -227,20 +252,21 @@ fn named_scale(file: &File, dimension: Dimension, names: &[String]) -> hdf5::Res
     Ok(scale)
 }
 
-/// Makes a compressed dataset without rows; `width` is the number of values in a row, `None` where
+/// Makes a dataset without rows, in chunks of so many, compressed where they are long; `width` is the number of values in a row, `None` where
 /// the dataset has one dimension.
 fn create_growing<T: H5Type>(
     file: &File,
     name: &str,
+    rows: usize,
     width: Option<usize>,
 ) -> hdf5::Result<hdf5::Dataset> {
     let extents: Vec<Extent> =
         [Extent::resizable(0)].into_iter().chain(width.map(Extent::fixed)).collect();
-    let chunk: Vec<usize> =
-        [CHUNK_ROWS].into_iter().chain(width.map(|width| width.max(1))).collect();
-    file.new_dataset::<T>()
-        .shuffle()
-        .deflate(DEFLATE)
+    let chunk: Vec<usize> = [rows].into_iter().chain(width.map(|width| width.max(1))).collect();
+    let dataset = file.new_dataset::<T>();
+    // compressing a few numbers takes longer than writing them
+    let dataset = if rows < CHUNK_ROWS { dataset } else { dataset.shuffle().deflate(DEFLATE) };
+    dataset
         .chunk(chunk)
         .obj_track_times(false)
         .attr_creation_order(AttrCreationOrder::Indexed)
@@ -254,12 +280,12 @@ fn create_dataset(
     unit: &str,
     long_name: &str,
     stored: Values,
-    width: Option<usize>,
+    (rows, width): (usize, Option<usize>),
 ) -> hdf5::Result<hdf5::Dataset> {
     let handle = match stored {
-        Values::Real => create_growing::<f64>(file, name, width),
-        Values::Index => create_growing::<i32>(file, name, width),
-        Values::Flag(_) => create_growing::<i8>(file, name, width),
+        Values::Real => create_growing::<f64>(file, name, rows, width),
+        Values::Index => create_growing::<i32>(file, name, rows, width),
+        Values::Flag(_) => create_growing::<i8>(file, name, rows, width),
     }?;
     Attribute::from(unit).write(&handle, "units")?;
     Attribute::from(long_name).write(&handle, "long_name")?;

@@ -7,10 +7,10 @@
 use super::Error;
 use super::header::{Ending, Header, Outcome};
 use super::publish::Draft;
-use super::schema::{Dimension, Source};
+use super::schema::{Dimension, Part, Side, Source};
 use super::store::{Block, CHUNK_ROWS, Store, datasets_of};
 use crate::mechanism::Observation;
-use crate::run::{Contact, Event, Peak, Recorder};
+use crate::run::{Contact, Event, Extremum, Peak, Recorder, Revolution};
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::thread::JoinHandle;
@@ -31,6 +31,7 @@ pub struct Writer {
     events: Block,
     contacts: Block,
     peaks: Block,
+    revolutions: Block,
     widths: Widths,
     draft: Option<Draft>,
     path: PathBuf,
@@ -69,6 +70,7 @@ impl Writer {
             events: Block::new(Dimension::Event),
             contacts: Block::new(Dimension::Contact),
             peaks: Block::new(Dimension::Peak),
+            revolutions: Block::new(Dimension::Revolution),
             widths: Widths {
                 bodies: header.bodies.len(),
                 joints: header.joints.len(),
@@ -92,6 +94,7 @@ impl Writer {
             std::mem::replace(&mut self.events, Block::new(Dimension::Event)),
             std::mem::replace(&mut self.contacts, Block::new(Dimension::Contact)),
             std::mem::replace(&mut self.peaks, Block::new(Dimension::Peak)),
+            std::mem::replace(&mut self.revolutions, Block::new(Dimension::Revolution)),
         ] {
             self.send(Message::Block(block))?;
         }
@@ -169,7 +172,11 @@ impl Recorder for Writer {
                 Source::Clearance(value) => column.extend(observation.clearances.iter().map(value)),
                 Source::Joint(value) => column.extend(observation.joints.iter().map(value)),
                 Source::Drive => column.extend(&observation.drive_torques),
-                Source::Event(_) | Source::Contact(_) | Source::Peak(_) => {}
+                Source::Event(_)
+                | Source::Contact(_)
+                | Source::Peak(_)
+                | Source::Revolution(_)
+                | Source::Extreme(..) => {}
             }
         }
         self.count(|writer| &mut writer.samples)
@@ -200,6 +207,31 @@ impl Recorder for Writer {
             }
         }
         self.count(|writer| &mut writer.peaks)
+    }
+
+    fn keeps_revolutions(&self) -> bool {
+        true
+    }
+
+    fn revolution(&mut self, revolution: &Revolution) -> Result<(), Error> {
+        let datasets = datasets_of(Dimension::Revolution);
+        for (dataset, column) in datasets.zip(&mut self.revolutions.columns) {
+            let part = |part| match part {
+                Part::Value => |extremum: Extremum| extremum.value,
+                Part::Time => |extremum: Extremum| extremum.time,
+            };
+            match dataset.source {
+                Source::Revolution(value) => column.push(value(revolution)),
+                Source::Extreme(measure, Side::Largest, of) => {
+                    column.extend(revolution.largest(measure).map(part(of)));
+                }
+                Source::Extreme(measure, Side::Smallest, of) => {
+                    column.extend(revolution.smallest(measure).map(part(of)));
+                }
+                _ => {}
+            }
+        }
+        self.count(|writer| &mut writer.revolutions)
     }
 }
 

@@ -4,7 +4,7 @@ use super::html::escape;
 use super::number::{milliseconds, significant};
 use super::run::Run;
 use crate::post::{
-    Contacts, EnergyBalance, Extreme, Extremes, Quantity, Reference, Stretch, Summary, Tally,
+    Basis, Contacts, EnergyBalance, Extreme, Extremes, Quantity, Reference, Stretch, Summary, Tally,
 };
 use crate::record::ResultFile;
 use crate::run::Contact;
@@ -178,20 +178,16 @@ fn extreme_cell(run: &Summarised<'_>, items: Items, item: &str, side: usize) -> 
         let ratio = significant(ratio, 3);
         format!(" <span class=\"ratio\" title=\"over the ideal one\">{ratio}\u{202f}×</span>")
     });
-    format!("{}{ratio}{}", with_uncertainty(&extreme), at(run, &extreme))
+    format!("{}{ratio}{}", told(&extreme, side), at(run, &extreme))
 }
 
-/// A value, and by how much it may be off for want of samples.
-fn with_uncertainty(extreme: &Extreme) -> String {
+/// The largest (0) or smallest (1) value, and whether no more is known than that a sample has it.
+fn told(extreme: &Extreme, side: usize) -> String {
     let value = significant(extreme.value, 6);
-    let sizeable = |uncertainty: &f64| *uncertainty > 5e-7 * extreme.value.abs();
-    match extreme.uncertainty.filter(sizeable) {
-        Some(uncertainty) => {
-            let rounded = format!("{uncertainty:.0e}").parse().unwrap_or(uncertainty);
-            let about = significant(rounded, 1);
-            format!("{value} <span class=\"about\">±\u{202f}{about}</span>")
-        }
-        None => value,
+    let sign = ['≥', '≤'][side];
+    match extreme.basis {
+        Basis::Sample => format!("<span class=\"about\">{sign}</span>\u{202f}{value}"),
+        Basis::Evaluated | Basis::Peak => value,
     }
 }
 

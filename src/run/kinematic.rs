@@ -4,6 +4,7 @@
 //! sample, on the branch that the start chose), accelerations and forces from one solve. The
 //! work of the drives is a Gauss–Legendre quadrature of their power.
 
+use super::extremes::{Look, Parts, Tracker};
 use super::{Error, Progress, Recorder, RulingCounts, Schedule, Watcher};
 use crate::dae::{Fault, Snapshot, State, System};
 use crate::mechanism::{Mechanism, Observation};
@@ -41,6 +42,8 @@ pub fn kinematic<S: Scalar, R: Recorder>(
     let fastest = mechanism.fastest_turn().max(1e-300);
     let rule = gauss();
     let mut progress = Progress::default();
+    let mut tracker = (recorder.keeps_revolutions())
+        .then(|| Tracker::new(mechanism.measures(), mechanism.revolution()));
     for k in 0..schedule.len() {
         let time: S = schedule.time(k);
         let span = time - now.time;
@@ -49,8 +52,11 @@ pub fn kinematic<S: Scalar, R: Recorder>(
             let left = parts - part as f64 + 1.0;
             let to = now.time + (time - now.time) * S::from_f64(1.0 / left);
             let to = if left > 1.0 { to } else { time };
-            advance(mechanism, &mut now, to, &rule)
-                .map_err(|source| Error::System { time: to.to_f64(), source })?;
+            let fault = |source| Error::System { time: to.to_f64(), source };
+            advance(mechanism, &mut now, to, &rule).map_err(fault)?;
+            if let Some(tracker) = &mut tracker {
+                follow(tracker, mechanism, &now, recorder)?;
+            }
             progress.steps += 1;
             progress.step = (span.to_f64()) / parts;
             progress.time = to.to_f64();
@@ -64,8 +70,60 @@ pub fn kinematic<S: Scalar, R: Recorder>(
         progress.samples += 1;
         recorder.sample(&observation).map_err(Error::Recorder)?;
     }
+    if let Some(last) = tracker.and_then(|tracker| tracker.last(now.time.to_f64())) {
+        recorder.revolution(&last).map_err(Error::Recorder)?;
+    }
     let _ = watch(&progress);
     Ok(RulingCounts::default())
+}
+
+/// Follows the extremes to where the mechanism now stands; leaves it there.
+fn follow<S: Scalar, R: Recorder>(
+    tracker: &mut Tracker,
+    mechanism: &mut Mechanism<S>,
+    now: &Snapshot<S>,
+    recorder: &mut R,
+) -> Result<(), Error<Infallible, R::Error>> {
+    let time = now.time.to_f64();
+    if !tracker.has_begun() {
+        tracker.restart(time, |values| mechanism.measure(values));
+        return Ok(());
+    }
+    tracker.arrive(time, |values| mechanism.measure(values));
+    if !tracker.has_moved() {
+        return Ok(());
+    }
+    if tracker.is_quiet() {
+        tracker.go_on();
+        return Ok(());
+    }
+    let failed = |source| Error::System { time, source };
+    let whole = Parts { count: 1, sketched: false };
+    tracker.examine(whole, &mut Nearby { mechanism, at: now.clone() }).map_err(failed)?;
+    for revolution in tracker.finished() {
+        recorder.revolution(&revolution).map_err(Error::Recorder)?;
+    }
+    reach(mechanism, &mut now.clone(), now.time).map_err(failed)
+}
+
+/// A mechanism that is assembled at times near to the last.
+struct Nearby<'a, S> {
+    mechanism: &'a mut Mechanism<S>,
+    at: Snapshot<S>,
+}
+
+impl<S: Scalar> Look for Nearby<'_, S> {
+    type Error = Fault;
+
+    fn look(&mut self, time: f64, _: bool, values: &mut [f64]) -> Result<f64, Fault> {
+        reach(self.mechanism, &mut self.at, S::from_f64(time))?;
+        self.mechanism.measure(values);
+        Ok(time)
+    }
+
+    fn sketch(&mut self, time: f64, values: &mut [f64]) -> Result<(), Fault> {
+        self.look(time, true, values).map(|_| ())
+    }
 }
 
 /// A mechanism without freedom and without clearance, at any time that is asked for.

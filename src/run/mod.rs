@@ -4,6 +4,8 @@
 //! constraints, with accelerations, multipliers and forces solved afresh. At an event the state
 //! that the engine returns is projected, never polished, and the new mode is latched from it.
 
+mod extremes;
+mod inside;
 mod kinematic;
 mod peak;
 mod recorder;
@@ -14,6 +16,7 @@ mod trajectory;
 mod window;
 mod witness;
 
+pub use extremes::LEFT_OUT;
 pub use kinematic::{Assembled, kinematic};
 pub use recorder::*;
 pub use schedule::Schedule;
@@ -24,6 +27,8 @@ use crate::clearance::{EventSlot, Mode};
 use crate::dae::{Advance, Direction, Engine, Fault, Snapshot, State, System};
 use crate::mechanism::Mechanism;
 use crate::scalar::Scalar;
+use extremes::Tracker;
+use inside::End;
 use sampling::Mark;
 use std::ops::ControlFlow;
 use touching::{Contacts, Touching};
@@ -137,6 +142,12 @@ struct Run<'a, S: Scalar, E: Engine<S>, R> {
     touching: Vec<Option<Touching<S>>>,
     contacts: Contacts,
     peaks: Vec<Peak>,
+    /// Extremes of the present revolution; `None` where nobody keeps them.
+    tracker: Option<Box<Tracker>>,
+    /// Square of the fastest pace (rad²/s²) at the last step's begin, and of that within it.
+    paces: [f64; 2],
+    /// Ends of the last step, where it was sketched.
+    ends: [End<S>; 2],
     progress: Progress,
     segment: u64,
     counts: RulingCounts,
@@ -165,6 +176,9 @@ where
     let (clearances, length) = (system.modes().len(), system.length());
     let speed = system.scales().1.first().copied().unwrap_or(0.0);
     let names = system.model().names().clearances.clone();
+    let tracker = recorder
+        .keeps_revolutions()
+        .then(|| Box::new(Tracker::new(system.measures(), system.revolution())));
     let mut run = Run {
         scratch: start.clone(),
         touching: vec![None; clearances],
@@ -179,6 +193,9 @@ where
         witness: Witness::new(names, length, speed, tolerance),
         contacts: Contacts::default(),
         peaks: Vec::new(),
+        tracker,
+        paces: [0.0; 2],
+        ends: End::both(&start),
         progress: Progress::default(),
         segment: 1,
         counts: RulingCounts::default(),
@@ -211,10 +228,12 @@ where
                 return Err(Error::Contradiction(Contradiction::TimeGoesBack { from, to }));
             }
             self.progress.steps += 1;
+            self.arrive();
             if S::EPSILON < f64::EPSILON {
                 self.check_modes()?;
             }
             self.follow_contacts()?;
+            self.follow_extremes()?;
             self.sample(advance == Advance::Event)?;
             match advance {
                 Advance::Event => self.event()?,
@@ -272,7 +291,9 @@ where
     }
 
     fn restart(&mut self, at: &Snapshot<S>) -> Outcome<(), S, E, R> {
-        self.engine.restart(at).map_err(|source| self.stopped(source))
+        self.engine.restart(at).map_err(|source| self.stopped(source))?;
+        self.restart_extremes();
+        Ok(())
     }
 
     /// Projects the state in `scratch`; returns how far it was off.
@@ -394,6 +415,7 @@ where
             end: f64::NAN,
             impact_rate: mode.impact_rate.to_f64(),
             peak_penetration: rates.depth.to_f64().max(0.0),
+            peak_penetration_time: begin,
             peak_force: rates.force.to_f64(),
             peak_time: begin,
             dissipated: 0.0,
@@ -464,7 +486,7 @@ where
         while let Some(contact) = self.contacts.next(true) {
             self.recorder.contact(contact).map_err(Error::Recorder)?;
         }
-        Ok(())
+        self.close_extremes()
     }
 
     /// Force (N) that the tolerance makes of nothing, where a contact has this slope (N/m): a

@@ -4,7 +4,7 @@
 //! looked at in places that no contact can swing far between, and between two of them wherever the
 //! parabola through what is known of the force's rate comes near zero.
 
-use super::recorder::{Peak, Recorder};
+use super::recorder::{Contact, Peak, Recorder};
 use super::{Mark, Outcome, Run};
 use crate::dae::Engine;
 use crate::mechanism::{ContactRates, Mechanism};
@@ -124,8 +124,8 @@ where
             }
         }
         if begin.1.rate > S::zero() && end.1.rate <= S::zero() {
-            let (_, rates) = self.summit(k, begin, end, |at| (at.depth, at.rate))?;
-            self.deepest(k, rates.depth);
+            let (time, rates) = self.summit(k, begin, end, |at| (at.depth, at.rate))?;
+            self.deepest(k, time.to_f64(), rates.depth.to_f64());
         }
         if rises(&begin.1) && !rises(&end.1) {
             let (time, rates) = self.summit(k, begin, end, |at| (at.force, at.force_rate))?;
@@ -133,10 +133,8 @@ where
             self.marks.push(Mark { time, peak: Some((k, rates.force.to_f64())) });
         }
         let (time, end) = end;
-        self.deepest(k, end.depth);
-        if rises(&end) {
-            self.so_far(k, time.to_f64(), end.force.to_f64());
-        }
+        self.deepest(k, time.to_f64(), end.depth.to_f64());
+        self.hardest(k, time.to_f64(), end.force.to_f64());
         if let Some(touching) = self.touching[k].as_mut() {
             touching.pulled |= end.force < S::zero();
             self.peaks.extend(touching.follow(end.force.to_f64(), noise));
@@ -144,27 +142,32 @@ where
         Ok(())
     }
 
-    fn deepest(&mut self, k: usize, depth: S) {
-        let number = self.touching[k].as_ref().map(|touching| touching.number);
-        if let Some(contact) = number.and_then(|number| self.contacts.get(number)) {
-            contact.peak_penetration = contact.peak_penetration.max(depth.to_f64());
+    /// The open contact, if clearance `k` is in one.
+    fn contact(&mut self, k: usize) -> Option<&mut Contact> {
+        let number = self.touching[k].as_ref()?.number;
+        self.contacts.get(number)
+    }
+
+    /// Takes a penetration (m) at a time (s) as a candidate for the contact's largest.
+    fn deepest(&mut self, k: usize, time: f64, depth: f64) {
+        if let Some(contact) = self.contact(k).filter(|contact| depth > contact.peak_penetration) {
+            (contact.peak_penetration, contact.peak_penetration_time) = (depth, time);
         }
     }
 
-    fn strongest(&mut self, k: usize, time: f64, force: f64) {
-        let Some(touching) = self.touching[k].as_mut() else { return };
-        touching.maximum(Peak { time, clearance: k, force });
-        self.so_far(k, time, force);
-    }
-
-    /// The largest force of a contact so far, which may yet rise.
-    fn so_far(&mut self, k: usize, time: f64, force: f64) {
-        let number = self.touching[k].as_ref().map(|touching| touching.number);
-        if let Some(contact) = number.and_then(|number| self.contacts.get(number))
-            && force > contact.peak_force
-        {
+    /// Takes a force (N) at a time (s) as a candidate for the contact's largest.
+    fn hardest(&mut self, k: usize, time: f64, force: f64) {
+        if let Some(contact) = self.contact(k).filter(|contact| force > contact.peak_force) {
             (contact.peak_force, contact.peak_time) = (force, time);
         }
+    }
+
+    /// Takes note of a maximum of the force (N) at a time (s).
+    fn strongest(&mut self, k: usize, time: f64, force: f64) {
+        if let Some(touching) = &mut self.touching[k] {
+            touching.maximum(Peak { time, clearance: k, force });
+        }
+        self.hardest(k, time, force);
     }
 
     /// The time (s) between two places at which a quantity of contact `k` is largest, and what
@@ -216,6 +219,7 @@ where
             landed.map_err(|source| self.stopped(source))?;
         }
         self.evaluate()?;
+        self.look_around();
         Ok(self.scratch.time)
     }
 }

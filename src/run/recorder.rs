@@ -1,6 +1,6 @@
 //! What a run tells whoever keeps it.
 
-use crate::mechanism::Observation;
+use crate::mechanism::{Measure, Measures, Observation};
 use std::error::Error;
 
 /// Kinds of event; the number is that of result files.
@@ -29,7 +29,8 @@ pub struct Event {
     pub rate: f64,
 }
 
-/// One contact, from its begin to its end. Penetration and force are true extrema.
+/// One contact, from its begin to its end, or to the end of the run while it is open. Penetration
+/// and force are true extrema.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Contact {
     /// Index of the clearance.
@@ -42,6 +43,8 @@ pub struct Contact {
     pub impact_rate: f64,
     /// Largest penetration (m).
     pub peak_penetration: f64,
+    /// Time of the largest penetration (s).
+    pub peak_penetration_time: f64,
     /// Largest normal force (N).
     pub peak_force: f64,
     /// Time of the largest normal force (s).
@@ -61,6 +64,43 @@ pub struct Peak {
     pub force: f64,
 }
 
+/// A value, and when it was (s).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Extremum {
+    /// The value.
+    pub value: f64,
+    /// Its time (s).
+    pub time: f64,
+}
+
+/// True extremes of all measures over one revolution of the first drive; over the whole run where
+/// no drive turns.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Revolution {
+    /// Begin (s).
+    pub begin: f64,
+    /// End (s): of the revolution or of the run.
+    pub end: f64,
+    /// What stands where in the lists.
+    pub measures: Measures,
+    /// The largest of each measure.
+    pub largest: Vec<Extremum>,
+    /// The smallest of each measure that has a sign.
+    pub smallest: Vec<Extremum>,
+}
+
+impl Revolution {
+    /// The largest values of a measure, by body, joint, clearance or drive.
+    pub fn largest(&self, measure: Measure) -> impl Iterator<Item = Extremum> {
+        self.measures.places(measure).map(|place| self.largest[place])
+    }
+
+    /// The smallest values of a measure that has a sign; none of one that has not.
+    pub fn smallest(&self, measure: Measure) -> impl Iterator<Item = Extremum> {
+        self.measures.places(measure).filter_map(|place| self.smallest.get(place).copied())
+    }
+}
+
 /// Keeps what a run tells. Samples come in the order of time; a contact comes when it ends, or,
 /// still open, when the run does.
 pub trait Recorder {
@@ -78,4 +118,15 @@ pub trait Recorder {
 
     /// A peak of a normal force.
     fn peak(&mut self, peak: Peak) -> Result<(), Self::Error>;
+
+    /// Whether it keeps the extremes of revolutions: if not, the run spares itself the search.
+    fn keeps_revolutions(&self) -> bool {
+        false
+    }
+
+    /// The extremes of a revolution that is over, or that the run ended in.
+    fn revolution(&mut self, revolution: &Revolution) -> Result<(), Self::Error> {
+        let _ = revolution;
+        Ok(())
+    }
 }

@@ -144,6 +144,7 @@ mod tests {
             end: f64::NAN,
             impact_rate: 1.0,
             peak_penetration: 0.0,
+            peak_penetration_time: begin,
             peak_force: 0.0,
             peak_time: begin,
             dissipated: 0.0,

@@ -1,6 +1,6 @@
 //! A recorder that keeps everything in memory.
 
-use super::recorder::{Contact, Event, Peak, Recorder};
+use super::recorder::{Contact, Event, Peak, Recorder, Revolution};
 use crate::mechanism::Observation;
 use std::convert::Infallible;
 
@@ -15,6 +15,8 @@ pub struct Trajectory {
     pub contacts: Vec<Contact>,
     /// Peaks of normal forces, in the order of time.
     pub peaks: Vec<Peak>,
+    /// Extremes of revolutions, in the order of time.
+    pub revolutions: Vec<Revolution>,
 }
 
 impl Recorder for Trajectory {
@@ -37,6 +39,15 @@ impl Recorder for Trajectory {
 
     fn peak(&mut self, peak: Peak) -> Result<(), Infallible> {
         self.peaks.push(peak);
+        Ok(())
+    }
+
+    fn keeps_revolutions(&self) -> bool {
+        true
+    }
+
+    fn revolution(&mut self, revolution: &Revolution) -> Result<(), Infallible> {
+        self.revolutions.push(revolution.clone());
         Ok(())
     }
 }

@@ -3,10 +3,11 @@
 //! on them.
 
 use freeplay::mechanism::{
-    BodyObservation, ClearanceObservation, EnergyObservation, JointObservation, Observation,
+    BodyObservation, ClearanceObservation, EnergyObservation, JointObservation, Measure, Measures,
+    Observation,
 };
 use freeplay::record::{Attribute, Ending, Header, Outcome, Writer};
-use freeplay::run::{Contact, Event, EventKind, Peak, Recorder};
+use freeplay::run::{Contact, Event, EventKind, Extremum, Peak, Recorder, Revolution};
 use std::path::{Path, PathBuf};
 
 /// Everything that a recorder is told.
@@ -16,6 +17,7 @@ pub struct Recorded {
     pub events: Vec<Event>,
     pub contacts: Vec<Contact>,
     pub peaks: Vec<Peak>,
+    pub revolutions: Vec<Revolution>,
 }
 
 /// A dataset that a file must hold, its values row by row.
@@ -72,8 +74,10 @@ impl Recorded {
             events: Vec::new(),
             contacts: Vec::new(),
             peaks: Vec::new(),
+            revolutions: Vec::new(),
         };
         run.add_events(events, &mut numbers);
+        run.add_revolutions(events / 3, &mut numbers);
         run
     }
 
@@ -95,9 +99,32 @@ impl Recorded {
                 end: if k + 1 == events { f64::NAN } else { numbers.next() },
                 impact_rate: numbers.next(),
                 peak_penetration: numbers.next(),
+                peak_penetration_time: numbers.next(),
                 peak_force: numbers.next(),
                 peak_time: numbers.next(),
                 dissipated: numbers.next(),
+            });
+        }
+    }
+
+    fn add_revolutions(&mut self, revolutions: usize, numbers: &mut Numbers) {
+        let header = &self.header;
+        let measures = Measures {
+            bodies: header.bodies.len(),
+            clearances: header.clearances.len(),
+            drives: header.drives.len(),
+            joints: header.joints.len(),
+        };
+        let mut extrema = |count: usize| -> Vec<Extremum> {
+            (0..count).map(|_| Extremum { value: numbers.next(), time: numbers.next() }).collect()
+        };
+        for k in 0..revolutions {
+            self.revolutions.push(Revolution {
+                begin: k as f64,
+                end: k as f64 + 1.0,
+                measures,
+                largest: extrema(measures.len()),
+                smallest: extrema(measures.signed()),
             });
         }
     }
@@ -123,12 +150,16 @@ impl Recorded {
         for peak in &self.peaks {
             writer.peak(*peak).unwrap();
         }
+        for revolution in &self.revolutions {
+            writer.revolution(revolution).unwrap();
+        }
     }
 
     /// What its file must hold.
     pub fn expected(&self) -> Vec<Expected> {
         let mut all = self.expected_of_samples();
         all.extend(self.expected_of_events());
+        all.extend(self.expected_of_revolutions());
         all
     }
 
@@ -231,6 +262,7 @@ impl Recorded {
             contact("contact_end", "s", |c| c.end),
             contact("contact_impact_rate", "m/s", |c| c.impact_rate),
             contact("contact_peak_penetration", "m", |c| c.peak_penetration),
+            contact("contact_peak_penetration_time", "s", |c| c.peak_penetration_time),
             contact("contact_peak_force", "N", |c| c.peak_force),
             contact("contact_peak_time", "s", |c| c.peak_time),
             contact("contact_dissipated", "J", |c| c.dissipated),
@@ -240,6 +272,86 @@ impl Recorded {
         ]
     }
 }
+
+impl Recorded {
+    fn expected_of_revolutions(&self) -> Vec<Expected> {
+        let end = |name, value: fn(&Revolution) -> f64| Expected {
+            name,
+            dimensions: vec!["revolution"],
+            shape: vec![self.revolutions.len()],
+            unit: "s",
+            values: self.revolutions.iter().map(value).collect(),
+        };
+        let mut all = vec![end("revolution_begin", |r| r.begin), end("revolution_end", |r| r.end)];
+        let Header { bodies, joints, clearances, drives, .. } = &self.header;
+        for (names, items, width, unit, measure) in [
+            (ACCELERATION_X, "body", bodies.len(), "m/s^2", Measure::AccelerationX),
+            (ACCELERATION_Y, "body", bodies.len(), "m/s^2", Measure::AccelerationY),
+            (ANGULAR_ACCELERATION, "body", bodies.len(), "rad/s^2", Measure::AngularAcceleration),
+            (NORMAL_FORCE, "clearance", clearances.len(), "N", Measure::NormalForce),
+            (TANGENTIAL_FORCE, "clearance", clearances.len(), "N", Measure::TangentialForce),
+            (JOINT_FORCE, "joint", joints.len(), "N", Measure::JointForce),
+            (DRIVE_TORQUE, "drive", drives.len(), "N m", Measure::DriveTorque),
+        ] {
+            let mut add = |name, unit, of: &dyn Fn(&Revolution) -> Vec<f64>| {
+                all.push(Expected {
+                    name,
+                    dimensions: vec!["revolution", items],
+                    shape: vec![self.revolutions.len(), width],
+                    unit,
+                    values: self.revolutions.iter().flat_map(of).collect(),
+                });
+            };
+            add(names[0], unit, &|r| r.largest(measure).map(|found| found.value).collect());
+            add(names[1], "s", &|r| r.largest(measure).map(|found| found.time).collect());
+            if let [_, _, smallest, time] = names {
+                add(smallest, unit, &|r| r.smallest(measure).map(|found| found.value).collect());
+                add(time, "s", &|r| r.smallest(measure).map(|found| found.time).collect());
+            }
+        }
+        all
+    }
+}
+
+type Names = &'static [&'static str];
+
+const ACCELERATION_X: Names = &[
+    "acceleration_x_largest",
+    "acceleration_x_largest_time",
+    "acceleration_x_smallest",
+    "acceleration_x_smallest_time",
+];
+const ACCELERATION_Y: Names = &[
+    "acceleration_y_largest",
+    "acceleration_y_largest_time",
+    "acceleration_y_smallest",
+    "acceleration_y_smallest_time",
+];
+const ANGULAR_ACCELERATION: Names = &[
+    "angular_acceleration_largest",
+    "angular_acceleration_largest_time",
+    "angular_acceleration_smallest",
+    "angular_acceleration_smallest_time",
+];
+const NORMAL_FORCE: Names = &[
+    "normal_force_largest",
+    "normal_force_largest_time",
+    "normal_force_smallest",
+    "normal_force_smallest_time",
+];
+const TANGENTIAL_FORCE: Names = &[
+    "tangential_force_largest",
+    "tangential_force_largest_time",
+    "tangential_force_smallest",
+    "tangential_force_smallest_time",
+];
+const JOINT_FORCE: Names = &["joint_force_largest", "joint_force_largest_time"];
+const DRIVE_TORQUE: Names = &[
+    "drive_torque_largest",
+    "drive_torque_largest_time",
+    "drive_torque_smallest",
+    "drive_torque_smallest_time",
+];
 
 /// An observation whose time is uneven but rising.
 fn observation(row: usize, header: &Header, numbers: &mut Numbers) -> Observation {

@@ -491,6 +491,10 @@ impl<S: Scalar, Y: System<S>> Engine<S> for Explicit<S, Y> {
             at.clone_from(&self.now);
             return Ok(());
         }
+        if time == began {
+            self.take(&self.from, at);
+            return Ok(());
+        }
         if self.flow.roots().is_empty() {
             self.partial(time - began, self.options.tolerance)?;
         } else {
@@ -543,7 +547,12 @@ impl<S: Scalar, Y: System<S>> Engine<S> for Explicit<S, Y> {
 impl<S: Scalar, Y: System<S>> Explicit<S, Y> {
     /// Writes `probe` into a snapshot.
     fn take_probe(&self, at: &mut Snapshot<S>) {
-        let (n, y) = (self.flow.coordinates(), &self.probe.y);
+        self.take(&self.probe, at);
+    }
+
+    /// Writes a point into a snapshot.
+    fn take(&self, point: &Point<S>, at: &mut Snapshot<S>) {
+        let (n, y) = (self.flow.coordinates(), &point.y);
         at.time = y[self.flow.time()];
         at.q.copy_from_slice(&y[..n]);
         at.v.copy_from_slice(&y[n..2 * n]);

@@ -1,0 +1,182 @@
+//! Forces, torques and accelerations at the state last evaluated, in one list of doubles that is
+//! quick to make: a run looks at it at every step, for their extremes.
+
+use super::Mechanism;
+use super::layout::{Layout, Origin, Role};
+use crate::model::Model;
+use crate::plane::Vector;
+use crate::scalar::Scalar;
+
+/// A quantity whose extremes a run keeps: one for each body, joint, clearance or drive.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Measure {
+    /// x of the acceleration of a body's mass centre (m/s²), fixed frame.
+    AccelerationX,
+    /// y of it (m/s²).
+    AccelerationY,
+    /// Angular acceleration of a body (rad/s²).
+    AngularAcceleration,
+    /// Normal force of a joint with clearance (N).
+    NormalForce,
+    /// Tangential force on the journal of a joint with clearance (N).
+    TangentialForce,
+    /// Torque of a drive (N m).
+    DriveTorque,
+    /// Magnitude of a joint's force (N), friction and all.
+    JointForce,
+}
+
+/// Where each measure stands in the list: accelerations by body, forces by clearance, torques by
+/// drive, and last, as they have no sign, the magnitudes by joint.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Measures {
+    /// Number of bodies, without the ground.
+    pub bodies: usize,
+    /// Number of joints with clearance.
+    pub clearances: usize,
+    /// Number of drives.
+    pub drives: usize,
+    /// Number of joints.
+    pub joints: usize,
+}
+
+impl Measures {
+    /// How many there are.
+    pub fn len(&self) -> usize {
+        self.signed() + self.joints
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// How many have a sign: these come first.
+    pub fn signed(&self) -> usize {
+        3 * self.bodies + 2 * self.clearances + self.drives
+    }
+
+    /// Places of a measure in the list, in the order of its bodies, joints, clearances or drives.
+    pub fn places(&self, measure: Measure) -> impl Iterator<Item = usize> + use<> {
+        let touching = 3 * self.bodies;
+        let driving = touching + 2 * self.clearances;
+        let (first, stride, count) = match measure {
+            Measure::AccelerationX => (0, 3, self.bodies),
+            Measure::AccelerationY => (1, 3, self.bodies),
+            Measure::AngularAcceleration => (2, 3, self.bodies),
+            Measure::NormalForce => (touching, 2, self.clearances),
+            Measure::TangentialForce => (touching + 1, 2, self.clearances),
+            Measure::DriveTorque => (driving, 1, self.drives),
+            Measure::JointForce => (self.signed(), 1, self.joints),
+        };
+        (0..count).map(move |item| first + stride * item)
+    }
+}
+
+/// Where the force of a joint stands in what was evaluated.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum ForceSource {
+    /// A contact.
+    Clearance(usize),
+    /// The joint of a driven body.
+    Driven(usize),
+    /// A multiplier and the one after it.
+    Multiplier(usize),
+}
+
+/// Where the force of each joint stands.
+pub(super) fn force_sources<S: Scalar>(model: &Model<S>, layout: &Layout<S>) -> Vec<ForceSource> {
+    let source = |(index, clearance): (usize, Option<usize>)| {
+        if let Some(k) = clearance {
+            return Some(ForceSource::Clearance(k));
+        }
+        if let Some(place) = layout.driven.iter().position(|driven| driven.joint == index) {
+            return Some(ForceSource::Driven(place));
+        }
+        let row = layout.constraints.iter().find(|row| row.origin == Origin::Joint(index))?;
+        Some(ForceSource::Multiplier(row.first))
+    };
+    let joints = model.joints().iter().map(|joint| joint.clearance).enumerate();
+    joints.filter_map(source).collect()
+}
+
+/// What a unit force along the line of centres gives the surfaces of each clearance in acceleration
+/// apart, at most (1/kg).
+pub(super) fn mobilities<S: Scalar>(model: &Model<S>, layout: &Layout<S>) -> Vec<f64> {
+    let of = |body: usize, arm: Vector<S>| match layout.roles[body] {
+        Role::Free(_) => {
+            let (mass, inertia) = (model.masses()[body], model.inertias()[body]);
+            1.0 / mass.to_f64() + arm.dot(arm).to_f64() / inertia.to_f64()
+        }
+        Role::Ground | Role::Driven => 0.0,
+    };
+    let pairs = model.clearances().iter().map(|clearance| clearance.pair);
+    pairs.map(|pair| of(pair.i, pair.s_i) + of(pair.j, pair.s_j)).collect()
+}
+
+impl<S: Scalar> Mechanism<S> {
+    /// What [`Mechanism::measure`] tells.
+    pub fn measures(&self) -> Measures {
+        Measures {
+            bodies: self.layout.roles.len() - 1,
+            clearances: self.modes.len(),
+            drives: self.model.drives().len(),
+            joints: self.force_sources.len(),
+        }
+    }
+
+    /// Forces, torques and accelerations at the state last evaluated, in the order of
+    /// [`Mechanism::measures`]; the list may be longer.
+    #[inline]
+    pub fn measure(&self, values: &mut [f64]) {
+        let now = &self.now;
+        let (accelerations, rest) = values.split_at_mut(3 * (now.accelerations.len() - 1));
+        for (values, a) in accelerations.chunks_exact_mut(3).zip(&now.accelerations[1..]) {
+            let a = [a.linear.x, a.linear.y, a.angular];
+            values.copy_from_slice(&a.map(S::to_f64));
+        }
+        let (forces, rest) = rest.split_at_mut(2 * now.touches.len());
+        for (values, touch) in forces.chunks_exact_mut(2).zip(&now.touches) {
+            let pair = touch.as_ref().map_or([0.0; 2], |touch| {
+                [touch.force.normal.value.to_f64(), touch.force.tangential.to_f64()]
+            });
+            values.copy_from_slice(&pair);
+        }
+        let (torques, magnitudes) = rest.split_at_mut(self.model.drives().len());
+        for (drive, value) in torques.iter_mut().enumerate() {
+            *value = self.drive_torque(drive).to_f64();
+        }
+        for (source, value) in self.force_sources.iter().zip(magnitudes) {
+            let [x, y] = match *source {
+                ForceSource::Clearance(k) => now.touches[k].as_ref().map_or([0.0; 2], |touch| {
+                    [touch.force.on_journal.x.to_f64(), touch.force.on_journal.y.to_f64()]
+                }),
+                ForceSource::Driven(place) => {
+                    let force = now.driving[place].0;
+                    [force.x.to_f64(), force.y.to_f64()]
+                }
+                ForceSource::Multiplier(first) => {
+                    [now.lambda[first].to_f64(), now.lambda[first + 1].to_f64()]
+                }
+            };
+            *value = (x * x + y * y).sqrt();
+        }
+    }
+
+    /// Square of the fastest pace (rad²/s²) of the motion at the state last evaluated: that of
+    /// contacts that swing on their stiffness, or of turning bodies against each other.
+    #[inline]
+    pub fn pace_squared(&self) -> f64 {
+        let touches = self.now.touches.iter().zip(&self.mobilities);
+        let swing = touches.fold(0.0, |sum, (touch, mobility)| match touch {
+            Some(touch) => sum + mobility * touch.force.normal.d_depth.to_f64().abs(),
+            None => sum,
+        });
+        let fastest = self.now.motions.iter().fold(0.0, |fastest, motion| {
+            let rate = motion.angular.to_f64();
+            let square = rate * rate;
+            if square > fastest { square } else { fastest }
+        });
+        swing + 4.0 * fastest
+    }
+}
