@@ -6,16 +6,20 @@ use super::told::seconds;
 use crate::record::Dimension;
 use std::fmt;
 
-/// Times this much farther apart than others, relative, are as near as those.
-const AS_NEAR: f64 = 1e-6;
+/// Distances of times that differ by no more than this, relative, are the same.
+const SAME: f64 = 1e-3;
+/// Times are a grid where so many of their distances are the usual one.
+const GRID: f64 = 0.45;
+/// Solvers that choose their steps make one at most so many times longer than those beside it.
+const GROWTH: f64 = 10.0;
 /// Shares are rounded; from this on they are told as whole.
 const WHOLE: f64 = 0.9995;
 
 /// How much of a reference was looked at.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Coverage {
-    /// Share of the time in which samples compared stand as near to one another as is usual for
-    /// them, or as those of the reference do.
+    /// Share of the time in which samples compared stand as near to one another as on their grid, or
+    /// as steps beside one another do that a solver has chosen, or as those of the reference.
     pub time: f64,
     /// The longest stretch (s) without a sample that was compared, where there is one.
     pub gap: Option<[f64; 2]>,
@@ -58,16 +62,19 @@ fn over_time(compared: &[f64], reference: &[f64], until: f64) -> (f64, Option<[f
     if until <= *first {
         return (1.0, None);
     }
-    let usual = usual_gap(compared);
+    let grid = grid(compared);
     let bounds = std::iter::once(*first).chain(compared.iter().copied()).chain([until]);
     let bounds: Vec<f64> = bounds.collect();
+    let length = |k: usize| bounds.get(k + 1).map_or(0.0, |to| to - bounds[k]);
     let mut missing = 0.0;
     let mut gap: Option<[f64; 2]> = None;
-    for pair in bounds.windows(2) {
-        let [from, to] = [pair[0], pair[1]];
+    for k in 0..bounds.len() - 1 {
+        let [from, to] = [bounds[k], bounds[k + 1]];
         let next = reference.partition_point(|time| *time <= from);
         let known = reference.get(next).map_or(0.0, |time| time - from);
-        let allowed = usual.max(known) * (1.0 + AS_NEAR);
+        let beside = length(k + 1).max(k.checked_sub(1).map_or(0.0, length));
+        let usual = grid.unwrap_or(GROWTH * beside);
+        let allowed = usual.max(known) * (1.0 + SAME);
         if to - from > allowed {
             missing += to - from - allowed;
             if gap.is_none_or(|[a, b]| to - from > b - a) {
@@ -78,12 +85,14 @@ fn over_time(compared: &[f64], reference: &[f64], until: f64) -> (f64, Option<[f
     (1.0 - missing / (until - first), gap)
 }
 
-/// The lower median of the distances between times.
-fn usual_gap(times: &[f64]) -> f64 {
+/// The distance of times on a grid, from which some may be missing; `None` where they are on none.
+fn grid(times: &[f64]) -> Option<f64> {
     let gaps = times.windows(2).map(|pair| pair[1] - pair[0]).filter(|gap| *gap > 0.0);
     let mut gaps: Vec<f64> = gaps.collect();
     gaps.sort_by(f64::total_cmp);
-    gaps.get(gaps.len().saturating_sub(1) / 2).copied().unwrap_or(0.0)
+    let usual = *gaps.get(gaps.len().saturating_sub(1) / 2)?;
+    let same = gaps.iter().filter(|gap| (*gap / usual - 1.0).abs() <= SAME).count();
+    (same as f64 >= GRID * gaps.len() as f64).then_some(usual)
 }
 
 /// Numbers of columns that count and that no drive prescribes: among those compared, and of all
@@ -181,6 +190,26 @@ mod tests {
             steps.push((last + (last * 0.1).clamp(1e-5, 9e-4)).min(0.09));
         }
         assert_eq!(share(&steps, &all), 1.0);
+    }
+
+    #[test]
+    fn steps_that_a_solver_chose_are_no_gaps_but_what_was_cut_out_of_them_is() {
+        let fine: Vec<f64> = (0..=90_000).map(|k| f64::from(k) * 1e-6).collect();
+        // an event every 10 ms, with steps from 1 ns on behind it
+        let mut steps = vec![0.0_f64];
+        let mut step = 1e-9;
+        while steps[steps.len() - 1] < 0.09 {
+            let last = steps[steps.len() - 1];
+            let event = ((last * 100.0 + 1e-9).floor() + 1.0) / 100.0;
+            let to = (last + step).min(event);
+            step = if to < event { (1.7 * step).min(1.3e-3) } else { 1e-9 };
+            steps.push(to);
+        }
+        assert_eq!(share(&steps, &fine), 1.0);
+        let cut: Vec<f64> =
+            steps.iter().copied().filter(|time| !(0.032..0.062).contains(time)).collect();
+        let share = share(&cut, &fine);
+        assert!(share > 0.6 && share < 0.85, "{share}");
     }
 
     #[test]
