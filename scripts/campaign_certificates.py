@@ -13,7 +13,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-PATIENCE = 300  # s, of a certificate and of an integration
+PATIENCE = 900  # s, of a certificate and of an integration
 SAMPLES = 40
 
 

@@ -3,7 +3,7 @@
 
 use fastrand::Rng;
 use std::f64::consts::TAU;
-use std::fmt::Write;
+use std::fmt::Write as _;
 
 /// A mechanism: what its kind is called, and its case without `[solver]`.
 pub struct Drawn {
@@ -26,8 +26,10 @@ pub struct Friction {
 const LONGEST: f64 = 0.06;
 const MOST_RPM: f64 = 30_000.0;
 
-/// Kinds of mechanism, each with the function that writes one.
-const KINDS: [(&str, fn(&mut Draft)); 12] = [
+/// Writes a mechanism of one kind.
+type Write = fn(&mut Draft);
+
+const KINDS: [(&str, Write); 12] = [
     ("four-bar", four_bar),
     ("six-bar", six_bar),
     ("chain", chain),
