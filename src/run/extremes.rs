@@ -840,7 +840,7 @@ mod tests {
     #[test]
     fn a_step_over_many_turns_ends_each_of_them() {
         let parts = Parts { count: 400, sketched: false };
-        let (rows, _) = follow(|t| (5.0 * t).sin(), &[0.0, 10.5 * TAU], Some(TAU), parts);
+        let (rows, _) = follow(|t| (2.0 * t).sin(), &[0.0, 10.5 * TAU], Some(TAU), parts);
         assert_eq!(rows.len(), 11);
         for row in &rows {
             assert!((row.largest[0].value - 1.0).abs() < 2.0 * LEFT_OUT, "{row:?}");
