@@ -18,6 +18,7 @@ pub mod run;
 pub mod record;
 pub mod case;
 pub mod simulate;
+pub mod advice;
 pub mod certify;
 pub mod post;
 pub mod export;

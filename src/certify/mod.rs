@@ -6,6 +6,7 @@
 
 mod digits;
 mod growth;
+mod horizon;
 mod matching;
 mod reference;
 mod report;
@@ -13,6 +14,9 @@ mod stored;
 mod tangent;
 
 pub use digits::{MOST_DIGITS, Parts, Scales, digits};
+pub use horizon::{
+    Companion, Digits, Horizon, LEAST_DIGITS, ONE_DRAW, Until, Witness, companion, ms,
+};
 pub use matching::{Match, Parting};
 pub use reference::{Error, Growth, Stage, Stopped, Watch};
 pub use stored::NotAReference;

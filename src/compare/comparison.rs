@@ -10,6 +10,7 @@ use super::series::{Aligned, Certificate, Series};
 use super::source::{Source, Trajectory, case_in};
 use super::{Error, mechanism, note};
 use crate::case::{Case, Changes};
+use crate::certify::Horizon;
 use crate::model::{JointDescription, JointKind};
 use crate::record::{self, DATASETS, ResultFile};
 use crate::run::Watcher;
@@ -44,6 +45,8 @@ pub struct Side {
     pub mapping: Vec<MappedName>,
     /// Names of its columns that are not.
     pub unused: Vec<String>,
+    /// How far it is true, where it tells.
+    pub horizon: Option<Horizon>,
 }
 
 /// A column of another program and what it is of ours.
@@ -283,6 +286,11 @@ impl<'a> Read<'a> {
         self.source.result()
     }
 
+    /// How far a result is true, where it tells.
+    pub fn horizon(&self) -> Option<Horizon> {
+        Horizon::of(self.result()?).ok().flatten()
+    }
+
     /// The table of another program and how it is mapped.
     pub fn foreign(&self) -> Option<(&'a ForeignTable, &Mapping)> {
         match (self.source, &self.mapping) {
@@ -319,6 +327,7 @@ impl<'a> Read<'a> {
             span: self.span(),
             mapping,
             unused,
+            horizon: self.horizon(),
         }
     }
 }

@@ -2,11 +2,12 @@
 
 use super::Over;
 use super::decimate::Point;
-use super::palette::{IDEAL, RUN};
+use super::palette::{BEYOND, BEYOND_PATH, IDEAL, RUN};
 use super::panel::{Axis, Choice, Mark, Panel, Sample, zero_line};
 use super::quantity::Unit;
 use super::runs::{Run, Runs};
 use super::sheet::{DOUBLE_COLUMN, Height, Sheet};
+use super::svg::Stroke;
 use super::text::Text;
 
 /// Most panels under each other.
@@ -19,13 +20,15 @@ pub(super) struct Curve {
     pub run: String,
     /// Its points.
     pub points: Vec<Point>,
+    /// Where on the horizontal axis a force of the run means nothing any more.
+    pub beyond: Option<[f64; 2]>,
 }
 
 impl Curve {
     /// Values at the samples of a run.
     pub fn of(run: &Run, values: Vec<f64>) -> Self {
         let points = run.abscissa().iter().copied().zip(values).map(|(x, y)| [x, y]).collect();
-        Curve { run: run.name.clone(), points }
+        Curve { run: run.name.clone(), points, beyond: run.behind(run.forces_end()) }
     }
 }
 
@@ -60,7 +63,8 @@ pub(super) fn stack(
     let everything = curves.iter().chain(ideal).flat_map(|curve| &curve.points);
     let y = Axis::fitting(title.clone(), unit, everything.map(|point| point[1]));
     let panel = |curve: &Curve| {
-        let mut marks: Vec<Mark> = zero_line(y.range).into_iter().collect();
+        let mut marks: Vec<Mark> = curve.beyond.map(Mark::Beyond).into_iter().collect();
+        marks.extend(zero_line(y.range));
         marks.push(Mark::Curve(curve.points.clone(), RUN));
         marks.extend(ideal.map(|ideal| Mark::Curve(ideal.points.clone(), IDEAL)));
         Panel {
@@ -76,10 +80,21 @@ pub(super) fn stack(
         let mut panels: Vec<Panel> = curves.iter().map(panel).collect();
         if let Some(first) = panels.first_mut() {
             first.legend = legend.clone().into_iter().collect();
+            first.legend.extend(curves.iter().find_map(|curve| curve.beyond).map(|_| beyond()));
         }
         column(panels)
     };
     curves.chunks(MOST_ROWS).map(page).collect()
+}
+
+/// The entry of a legend for what lies beyond the horizon of a run.
+pub(super) fn beyond() -> (Sample, Text) {
+    (Sample::Bar(BEYOND), Text::roman("beyond the horizon"))
+}
+
+/// The same for paths and points.
+pub(super) fn beyond_path() -> (Sample, Text) {
+    (Sample::Line(Stroke::solid(BEYOND_PATH, 0.9)), Text::roman("beyond the horizon"))
 }
 
 /// Panels under each other over one horizontal axis.

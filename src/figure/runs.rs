@@ -2,6 +2,7 @@
 
 use super::{Error, Options, Over};
 use crate::case::{Case, Changes};
+use crate::certify::Horizon;
 use crate::model::did_you_mean;
 use crate::record::{Dimension, ResultFile, Table};
 use crate::run::{Contact, Event, Peak};
@@ -27,6 +28,8 @@ pub(super) struct Run {
     pub contacts: Vec<Contact>,
     /// All local maxima of normal forces.
     pub peaks: Vec<Peak>,
+    /// How far the run is true; `None` where the file does not tell.
+    horizon: Option<Horizon>,
     window: Range<usize>,
     over: Over,
     /// Datasets read last: figures of several parts read the same ones again.
@@ -69,6 +72,7 @@ impl Run {
             events: file.events()?,
             contacts: file.contacts()?,
             peaks: file.peaks()?,
+            horizon: Horizon::of(&file)?,
             window,
             over: options.over,
             read: RefCell::default(),
@@ -125,6 +129,27 @@ impl Run {
             Over::Time => time,
             Over::Angle => interpolate(&self.times, self.abscissa(), time),
         }
+    }
+
+    /// Time (s) behind which the state means nothing, where that is drawn.
+    pub fn state_ends(&self) -> Option<f64> {
+        self.ends(|horizon| horizon.state)
+    }
+
+    /// The same of forces, torques and accelerations.
+    pub fn forces_end(&self) -> Option<f64> {
+        self.ends(|horizon| horizon.forces)
+    }
+
+    fn ends(&self, of: fn(&Horizon) -> f64) -> Option<f64> {
+        let last = self.times.last()?;
+        self.horizon.as_ref().map(of).filter(|until| until < last)
+    }
+
+    /// Where on the horizontal axis what is drawn lies behind a time (s).
+    pub fn behind(&self, until: Option<f64>) -> Option<[f64; 2]> {
+        let (first, last) = self.times.first().zip(self.times.last())?;
+        until.map(|until| [self.place(until.max(*first)), self.place(*last)])
     }
 
     /// Whether a time lies in what is drawn.

@@ -18,7 +18,7 @@ pub use recorder::*;
 pub use schedule::Schedule;
 pub use trajectory::Trajectory;
 
-use crate::clearance::{EventSlot, Mode};
+use crate::clearance::{Clearance, EventSlot, Mode};
 use crate::dae::{Advance, Direction, Engine, Fault, Snapshot, State, System};
 use crate::mechanism::Mechanism;
 use crate::scalar::Scalar;
@@ -65,6 +65,25 @@ pub enum Error<E: std::error::Error + 'static, R: std::error::Error + 'static> {
         /// Key of the joint whose event it was.
         clearance: String,
         /// Where it was noticed (s).
+        time: f64,
+    },
+    /// A journal is so deep in its bearing that no contact law means anything.
+    #[error(
+        "the journal of {clearance} is {depth:.4e} m deep in its bearing at t = {time:e} s; its \
+         contact law means nothing beyond {allowed:.4e} m, {share} of the journal's radius \
+         (maximum_penetration). A mechanism that cannot turn, a stiffness in other units than \
+         N/m^n or a load far too large comes to this: `freeplay check` says which is likely"
+    )]
+    TooDeep {
+        /// Key of the joint.
+        clearance: String,
+        /// Penetration (m).
+        depth: f64,
+        /// The largest that is believed (m).
+        allowed: f64,
+        /// The same as a share of the journal's radius.
+        share: f64,
+        /// Where (s).
         time: f64,
     },
     /// What was to be kept could not be.
@@ -125,6 +144,8 @@ struct Run<'a, S: Scalar, E: Engine<S>, R> {
     window: Window,
     scratch: Snapshot<S>,
     touching: Vec<Option<Touching<S>>>,
+    /// Largest penetrations that the contact laws are believed for (m), by clearance.
+    allowed_depths: Vec<f64>,
     contacts: Contacts,
     peaks: Vec<Peak>,
     progress: Progress,
@@ -152,9 +173,12 @@ where
 {
     let start = engine.system().start().clone();
     let clearances = engine.system().modes().len();
+    let deepest = |c: &Clearance<S>| c.maximum_penetration * c.journal_radius.to_f64();
+    let allowed_depths = engine.system().model().clearances().iter().map(deepest).collect();
     let mut run = Run {
         scratch: start.clone(),
         touching: vec![None; clearances],
+        allowed_depths,
         engine,
         recorder,
         schedule,
@@ -188,6 +212,7 @@ where
         self.await_sample(0);
         self.begin_contacts()?;
         self.sample(false)?;
+        self.check_depths()?;
         let end: S = self.schedule.duration();
         while self.engine.now().time < end {
             let advance = self.engine.step(end).map_err(|source| self.stopped(source))?;
@@ -197,6 +222,7 @@ where
             }
             self.follow_contacts()?;
             self.sample(advance == Advance::Event)?;
+            self.check_depths()?;
             match advance {
                 Advance::Event => self.event()?,
                 Advance::Stepped if self.progress.steps.is_multiple_of(DRIFT_EVERY) => {
@@ -233,6 +259,29 @@ where
         let system = self.engine.system();
         let clearance = system.model().names().clearances[system.slot(slot).0].clone();
         Err(Error::Missed { clearance, time })
+    }
+
+    /// Whether every contact is as shallow as its law can be believed, at the end of the step.
+    fn check_depths(&mut self) -> Outcome<(), S, E, R> {
+        let depths = self.touching.iter().map(|touching| touching.as_ref().map(|t| t.last.depth));
+        let depths = depths.map(|depth| depth.map_or(0.0, S::to_f64));
+        let mut beyond = depths.zip(&self.allowed_depths).enumerate();
+        match beyond.find(|(_, (depth, allowed))| !(depth <= *allowed)) {
+            Some((k, (depth, _))) => Err(self.too_deep(k, depth)),
+            None => Ok(()),
+        }
+    }
+
+    fn too_deep(&mut self, k: usize, depth: f64) -> Error<E::Error, R::Error> {
+        let time = self.engine.now().time.to_f64();
+        let model = self.engine.system().model();
+        Error::TooDeep {
+            clearance: format!("joints.{}", model.names().clearances[k]),
+            depth,
+            allowed: self.allowed_depths[k],
+            share: model.clearances()[k].maximum_penetration,
+            time,
+        }
     }
 
     fn tell(&mut self, watch: Watcher<'_>) -> Outcome<(), S, E, R> {
