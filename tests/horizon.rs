@@ -8,7 +8,7 @@ mod simulated;
 mod written;
 
 use freeplay::case::{Case, Changes};
-use freeplay::certify::{self, Companion, Horizon, Until, Witness};
+use freeplay::certify::{self, Companion, Horizon, Reach, Until, Witness};
 use freeplay::post::case_of;
 use freeplay::record::ResultFile;
 use freeplay::run::Progress;
@@ -26,6 +26,11 @@ fn go_on(_: &Progress) -> ControlFlow<()> {
 
 /// A run and its companion, as `freeplay run` has them.
 fn followed(case: &Case, times: Option<Vec<f64>>) -> Companion {
+    let reach = Reach { to_the_end: false, run_steps: 1_000_000 };
+    followed_to(case, times, reach)
+}
+
+fn followed_to(case: &Case, times: Option<Vec<f64>>, reach: Reach) -> Companion {
     let simulation = told(Simulation::new(case));
     let simulation = match times {
         Some(times) => simulation.sampled_at(times),
@@ -39,7 +44,7 @@ fn followed(case: &Case, times: Option<Vec<f64>>) -> Companion {
     told(ran);
     run.samples.iter().for_each(|sample| witness.take(sample));
     run.contacts.iter().for_each(|contact| witness.take_contact(*contact));
-    told(certify::companion(case, &schedule, &witness, false, &mut go_on))
+    told(certify::companion(case, &schedule, &witness, reach, &mut go_on))
 }
 
 /// The estimate of a run's digits against what they are. It may not be far above the truth, and
@@ -208,6 +213,20 @@ fn a_run_in_its_horizon_holds_to_the_end() {
     assert!(companion.horizon().is_whole() && companion.horizon().at_end.unwrap().state > 6.0);
 }
 
+/// What the companion could not follow is not known, and neither true nor gone.
+#[test]
+fn a_companion_that_is_lost_says_so() {
+    let path = format!("{}/cases/four-bar-c.toml", root().display());
+    let case = told(Case::read(Path::new(&path), &Changes::default()));
+    let companion = followed_to(&case, None, Reach { to_the_end: false, run_steps: 0 });
+    assert!(companion.stopped.as_ref().unwrap().contains("steps"), "{companion:?}");
+    let horizon = companion.horizon();
+    assert!(!horizon.is_whole() && horizon.state > 1e-3, "{horizon:?}");
+    assert!(horizon.holds().contains("is not known"), "{}", horizon.holds());
+    let digits = &companion.series()[2];
+    assert!(digits.values.last().unwrap().is_nan(), "{}", digits.name);
+}
+
 /// Many samples are thinned, and told of all the same.
 #[test]
 fn of_a_long_run_the_companion_looks_at_some_samples_and_tells_of_all() {
@@ -246,7 +265,7 @@ fn check_says_where_a_linkage_locks() {
     let json: Value = serde_json::from_str(&json).unwrap();
     assert_eq!(json["turn"]["goes_round"], false);
     let angle = json["turn"]["drive_angles"]["crank"].as_f64().unwrap();
-    let locks = ((0.0144 + 0.04 - 0.09) / (2.0 * 0.12 * 0.2) as f64).acos();
+    let locks = f64::acos((0.0144 + 0.04 - 0.09) / (2.0 * 0.12 * 0.2));
     assert!((angle - locks).abs() < 1e-4, "{angle} {locks}");
     let words = said(&freeplay(&["check", &too_long(folder.path())]));
     assert!(words.contains("LOCKS") && words.contains("drive crank at 137.8"), "{words}");

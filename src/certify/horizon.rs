@@ -26,6 +26,10 @@ pub const LEAST_DIGITS: f64 = 1.0;
 const MOST_KEPT: usize = 8192;
 /// Of these so many are the first, none left out: a horizon is near the start of a long run.
 const ALL_KEPT: usize = 4096;
+/// Steps of a companion over those of the run, from which on it is lost: in a storm of events, say.
+const MORE_STEPS: u64 = 20;
+/// Steps that are few for any run.
+const FEW_STEPS: u64 = 2000;
 /// Contacts that it looks at, at most.
 const MOST_CONTACTS: usize = 1 << 16;
 /// Samples from which on no digits are written for each.
@@ -42,6 +46,8 @@ const TIGHTEST: f64 = 1e-15;
 const TIGHTER: f64 = 1e-2;
 /// Error of a trajectory over the tolerance of its steps: some tens.
 const ERROR_OF_STEPS: f64 = 100.0;
+/// By how much more a run may be off before it is odd, where this many digits should be left.
+const ODD: (f64, f64) = (10.0, 3.0);
 
 /// What a companion must know of a run: the sizes of its quantities, and samples to be held
 /// against. Of a long run every second, fourth, … is kept, so that memory stays bounded.
@@ -168,14 +174,25 @@ pub struct Companion {
     pub end: f64,
     /// Why the companion stopped before it came to know the horizon, if it did.
     pub stopped: Option<String>,
+    /// When (s) run and companion part although errors have not grown that much, if they do: one
+    /// of them may have missed an event.
+    pub parts_early: Option<f64>,
     /// How many samples the run has.
     samples: usize,
     /// Numbers of those that were looked at.
     places: Vec<usize>,
 }
 
-/// Sends a companion along a run of a case that is done: until the horizon, or, if asked `to_the_end`, to
-/// the end of the run.
+/// How far a companion goes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Reach {
+    /// To the end of the run, and not only to where its numbers mean nothing any more.
+    pub to_the_end: bool,
+    /// Steps that the run took: a companion that takes far more is lost.
+    pub run_steps: u64,
+}
+
+/// Sends a companion along a run of a case that is done.
 ///
 /// # Errors
 /// [`simulate::Error::Interrupted`] if whoever watches asked to stop. A companion that fails says
@@ -184,14 +201,13 @@ pub fn companion(
     case: &Case,
     schedule: &Schedule,
     witness: &Witness,
-    to_the_end: bool,
+    reach: Reach,
     watch: Watcher<'_>,
 ) -> Result<Companion, simulate::Error<Infallible>> {
     let samples: Vec<&Observation> = witness.to_follow().map(|(_, sample)| sample).collect();
     let times: Vec<f64> = samples.iter().map(|sample| sample.time).collect();
     let end = times.last().copied().unwrap_or(0.0);
-    let gone = Cell::new(false);
-    let enough = if to_the_end { OVERFLOWING } else { GONE };
+    let (gone, lost) = (Cell::new(false), Cell::new(false));
     let mut follower = Follower {
         scales: witness.scales(),
         samples,
@@ -200,23 +216,25 @@ pub fn companion(
         apart: Vec::new(),
         peaks_apart: Vec::new(),
         met: vec![0; witness.contacts.len()],
-        enough,
+        enough: if reach.to_the_end { OVERFLOWING } else { GONE },
         gone: &gone,
+    };
+    let most_steps = reach.run_steps.saturating_mul(MORE_STEPS).saturating_add(FEW_STEPS);
+    let mut watch = |progress: &Progress| {
+        lost.set(progress.steps > most_steps);
+        if gone.get() || lost.get() { ControlFlow::Break(()) } else { watch(progress) }
     };
     let ran = match times.is_empty() {
         true => Ok(()),
-        false => {
-            let mut watch = |progress: &Progress| match gone.get() {
-                true => ControlFlow::Break(()),
-                false => watch(progress),
-            };
-            follow(case, &schedule.clone().at(times.clone()), &mut follower, &mut watch)
-        }
+        false => follow(case, &schedule.clone().at(times.clone()), &mut follower, &mut watch),
     };
     let Follower { lengths, apart, peaks_apart, .. } = follower;
     let stopped = match ran {
         Ok(()) => None,
         Err(simulate::Error::Interrupted { .. }) if gone.get() => None,
+        Err(simulate::Error::Interrupted { .. }) if lost.get() => {
+            Some(format!("it took more than {most_steps} steps"))
+        }
         Err(interrupted @ simulate::Error::Interrupted { .. }) => return Err(interrupted),
         Err(error) => Some(super::chain(&error)),
     };
@@ -224,6 +242,7 @@ pub fn companion(
     let apart = with_peaks(apart, &tangent.times, peaks_apart);
     let digits = estimate(case, &tangent, &apart);
     Ok(Companion {
+        parts_early: parts_early(case, &tangent, &digits),
         tangent,
         digits,
         end,
@@ -231,6 +250,14 @@ pub fn companion(
         samples: witness.samples,
         places: witness.to_follow().map(|(number, _)| *number).collect(),
     })
+}
+
+/// When a run loses its last digit although the growth of errors leaves it some.
+fn parts_early(case: &Case, tangent: &Tangent, digits: &[Digits]) -> Option<f64> {
+    let lost = digits.iter().position(|digits| digits.state < LEAST_DIGITS)?;
+    let (more, left) = ODD;
+    let expected = tangent.digits_of(case.plan.solver.relative_tolerance * ERROR_OF_STEPS * more);
+    (expected[lost] >= left).then(|| tangent.times[lost])
 }
 
 /// Differences at samples, with those of peaks (s, scaled) at the first sample behind them.
@@ -352,7 +379,8 @@ impl Companion {
         let numbers =
             numbers.into_iter().map(|(name, value)| (name.to_owned(), Attribute::from(value)));
         let stopped = stopped.map(|why| ("horizon_stopped".to_owned(), Attribute::from(why)));
-        numbers.chain(stopped).collect()
+        let early = self.parts_early.map(|time| ("horizon_parts_early".to_owned(), time.into()));
+        numbers.chain(stopped).chain(early).collect()
     }
 
     /// The datasets that the companion adds to a result file; none where samples are very many.
@@ -618,4 +646,78 @@ pub fn ms(time: f64) -> String {
     }
     let decimals = (3 - time.abs().log10().floor() as i32).clamp(0, 9) as usize;
     format!("{time:.decimals$} ms")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::case::Changes;
+    use std::path::Path;
+
+    fn companion_of(lengths: &[f64], state: &[f64], end: f64) -> Companion {
+        let times = (0..lengths.len()).map(|k| k as f64).collect();
+        let digits = state.iter().map(|state| Digits { state: *state, forces: *state });
+        Companion {
+            tangent: Tangent::new(times, lengths.to_vec()),
+            digits: digits.collect(),
+            end,
+            stopped: None,
+            parts_early: None,
+            samples: 5,
+            places: vec![0, 2, 4],
+        }
+    }
+
+    #[test]
+    fn a_horizon_is_the_last_time_with_a_digit() {
+        let companion = companion_of(&[1.0; 3], &[9.0, 2.0, 0.5], 2.0);
+        assert_eq!(companion.state_until(1.0), Until::Time(1.0));
+        assert_eq!(companion.state_until(9.5), Until::Never);
+        assert_eq!(companion.forces_until(0.5), Until::End);
+        // as far as it was followed
+        assert_eq!(companion_of(&[1.0; 3], &[9.0; 3], 4.0).state_until(1.0), Until::Time(2.0));
+        let horizon = companion.horizon();
+        assert_eq!((horizon.state, horizon.forces, horizon.end), (1.0, 1.0, 2.0));
+        assert!(horizon.holds().contains("until 1000 ms; a number beyond is"), "{horizon:?}");
+    }
+
+    #[test]
+    fn samples_between_have_the_digits_of_the_next_that_was_looked_at() {
+        let companion = companion_of(&[1.0; 3], &[9.0, 5.0, 2.0], 2.0);
+        assert_eq!(companion.series()[2].values, [9.0, 5.0, 5.0, 2.0, 2.0]);
+        assert_eq!(companion.series()[0].values, [1.0; 5]);
+    }
+
+    #[test]
+    fn a_run_that_parts_before_errors_have_grown_is_odd() {
+        let text = include_str!("../../cases/four-bar-a.toml");
+        let case = Case::from_text(Path::new("a.toml"), text, &Changes::default()).unwrap();
+        for (grown, expected) in [(100.0, Some(2.0)), (1e12, None)] {
+            let Companion { tangent, digits, .. } =
+                companion_of(&[100.0, 100.0, grown], &[9.0, 9.0, 0.5], 2.0);
+            assert_eq!(parts_early(&case, &tangent, &digits), expected);
+        }
+    }
+
+    #[test]
+    fn of_many_samples_the_first_and_the_last_are_kept() {
+        let mut witness = Witness::new(Vec::new());
+        let many = 3 * MOST_KEPT;
+        for k in 0..many {
+            witness.take(&Observation { time: k as f64, ..Observation::default() });
+        }
+        let numbers: Vec<usize> = witness.to_follow().map(|(number, _)| *number).collect();
+        assert!(numbers.len() <= MOST_KEPT + 1 && numbers.windows(2).all(|two| two[0] < two[1]));
+        assert_eq!(numbers[..ALL_KEPT], (0..ALL_KEPT).collect::<Vec<_>>());
+        assert_eq!(numbers.last(), Some(&(many - 1)));
+        assert!(witness.to_follow().all(|(number, sample)| sample.time == *number as f64));
+    }
+
+    #[test]
+    fn a_peak_that_is_off_counts_from_the_next_sample_on() {
+        let none = vec![Parts::all(0.0); 3];
+        let apart = with_peaks(none, &[0.0, 1.0, 2.0], vec![(0.5, 0.25), (5.0, 1.0)]);
+        let forces: Vec<f64> = apart.iter().map(|apart| apart.forces).collect();
+        assert_eq!(forces, [0.0, 0.25, 0.0]);
+    }
 }

@@ -15,7 +15,7 @@ mod tangent;
 
 pub use digits::{MOST_DIGITS, Parts, Scales, digits};
 pub use horizon::{
-    Companion, Digits, Horizon, LEAST_DIGITS, ONE_DRAW, Until, Witness, companion, ms,
+    Companion, Digits, Horizon, LEAST_DIGITS, ONE_DRAW, Reach, Until, Witness, companion, ms,
 };
 pub use matching::{Match, Parting};
 pub use reference::{Error, Growth, Stage, Stopped, Watch};

@@ -3,7 +3,7 @@
 use super::signals::Signals;
 use super::{CaseArguments, Failure, chain};
 use crate::case::{Case, Precision};
-use crate::certify::{self, Companion, Horizon, LEAST_DIGITS, ONE_DRAW, Until, Witness, ms};
+use crate::certify::{self, Companion, Horizon, LEAST_DIGITS, ONE_DRAW, Reach, Until, Witness, ms};
 use crate::mechanism::Observation;
 use crate::record::{self, Ending, Outcome, ResultFile, Writer, utc};
 use crate::run::{Contact, Event, Peak, Progress, Recorder, Schedule};
@@ -133,6 +133,7 @@ impl Told {
                     json!({ "state": digits.state, "forces": digits.forces })
                 }),
                 "stopped": stopped,
+                "parts_early": companion.parts_early,
                 "growth_exponent": companion.tangent.exponent_per(period),
                 "growth_exponents": companion.tangent.exponents(period),
                 "growth_period": period,
@@ -177,7 +178,7 @@ fn simulate_into(
     let (statistics, ran) = simulation.run(&mut witnessed, &mut watch);
     let Witnessed { writer, witness } = witnessed;
     let followed = ran.and_then(|()| match witness {
-        Some(witness) => follow(tangent, &schedule, &witness, signals),
+        Some(witness) => follow(tangent, &schedule, &witness, last.steps, signals),
         None => Ok(None),
     });
     bar.finish_and_clear();
@@ -212,6 +213,7 @@ fn follow(
     tangent: Carried<'_>,
     schedule: &Schedule,
     witness: &Witness,
+    run_steps: u64,
     signals: &Signals,
 ) -> Result<Option<Companion>, simulate::Error<record::Error>> {
     let (case, to_the_end) = match tangent {
@@ -220,7 +222,8 @@ fn follow(
         Carried::ToTheEnd(case) => (case, true),
     };
     let mut flow = |_: &Progress| signals.flow();
-    let companion = certify::companion(case, schedule, witness, to_the_end, &mut flow);
+    let reach = Reach { to_the_end, run_steps };
+    let companion = certify::companion(case, schedule, witness, reach, &mut flow);
     companion.map(Some).map_err(simulate::Error::forget_recorder)
 }
 
@@ -294,6 +297,15 @@ fn horizon_words(companion: &Companion, revolution: Option<f64>) -> String {
             )
         }
     };
+    if let Some(time) = companion.parts_early {
+        let _ = writeln!(
+            words,
+            "  doubt        at {} the run parts from its companion although errors have not grown \
+             that much: one of them may have missed an event; compare with another tolerance or \
+             engine",
+            ms(time)
+        );
+    }
     let _ = match companion.doubles_until() {
         Until::Time(time) if companion.stopped.is_none() => writeln!(
             words,
