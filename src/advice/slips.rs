@@ -17,14 +17,16 @@ const FASTEST: f64 = 1e6;
 const OF_A_LINK: f64 = 0.1;
 /// A bearing larger than this is large in any mechanism (m).
 const LARGE_BEARING: f64 = 1.0;
-/// Radius of gyration over the farthest point of a body: more is a slip, and less than the other.
+/// Radius of gyration over the farthest point of a body, from which on it is too small, and over
+/// the size of the mechanism, from which on it is too large.
 const GYRATION: [f64; 2] = [3e-3, 10.0];
 
 /// All such numbers of a case.
 pub(super) fn notes(case: &Case) -> Vec<Note> {
     let mut notes = Vec::new();
     let description = &case.description;
-    notes.extend(description.bodies.iter().filter_map(inertia));
+    let size = size_of(description);
+    notes.extend(description.bodies.iter().filter_map(|body| inertia(body, size)));
     for joint in &description.joints {
         let JointKind::Revolute { clearance } = &joint.kind;
         if let Some(clearance) = clearance {
@@ -49,20 +51,34 @@ fn links(points: &[NamedPoint]) -> impl Iterator<Item = f64> {
     pairs.map(apart).filter(|length| *length > 0.0)
 }
 
-fn inertia(body: &BodyDescription) -> Option<Note> {
+/// An inertia that no body of this size has: larger than the whole mechanism's size explains, or
+/// smaller than that of a body with these points.
+fn inertia(body: &BodyDescription, size: f64) -> Option<Note> {
     let reach = |point: &NamedPoint| point.at[0].to_f64().hypot(point.at[1].to_f64());
     let farthest = body.points.iter().map(reach).fold(0.0, f64::max);
     let gyration = (body.inertia.to_f64() / body.mass.to_f64()).sqrt();
-    let ratio = gyration / farthest;
-    if farthest == 0.0 || (GYRATION[0]..=GYRATION[1]).contains(&ratio) {
+    let [least, most] = GYRATION;
+    let large = size > 0.0 && gyration > most * size.max(farthest);
+    if !large && gyration >= least * farthest {
         return None;
     }
+    let beside = if large { size.max(farthest) } else { farthest };
     let text = format!(
-        "{} kg m² with a mass of {} kg is a radius of gyration of {gyration:.3e} m, in a body whose \
-         points reach {farthest:.3e} m: is it in kg m²?",
+        "{} kg m² with a mass of {} kg is a radius of gyration of {gyration:.3e} m, beside lengths \
+         of {beside:.3e} m: is it in kg m²?",
         body.inertia, body.mass
     );
     Some(Note::new(format!("bodies.{}.inertia", body.name), text))
+}
+
+/// The longest link or the largest bearing (m).
+fn size_of(description: &Description) -> f64 {
+    let links = description.bodies.iter().flat_map(|body| links(&body.points));
+    let bearings = description.joints.iter().filter_map(|joint| {
+        let JointKind::Revolute { clearance } = &joint.kind;
+        Some(clearance.as_ref()?.bearing_radius.to_f64())
+    });
+    links.chain(bearings).fold(0.0, f64::max)
 }
 
 fn clearance_notes(

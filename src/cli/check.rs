@@ -252,7 +252,8 @@ fn turn_line(turn: &Turn, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         }
         Turn::Free { freedoms } => writeln!(
             f,
-            "not tried: the ideal mechanism has {freedoms} freedoms that no drive prescribes"
+            "not tried: the ideal mechanism has {freedoms} freedom{} that no drive prescribes",
+            if *freedoms == 1 { "" } else { "s" }
         ),
         Turn::Still => writeln!(f, "no drive turns"),
         Turn::NotAssembled { .. } => {
