@@ -809,7 +809,8 @@ mod tests {
         let (rows, looks) = follow(|t| t.exp(), &steps(0.05, 2.0), None, WHOLE);
         assert_eq!(rows[0].largest[0], Extremum { value: 2_f64.exp(), time: 2.0 });
         assert_eq!(rows[0].smallest[0], Extremum { value: 1.0, time: 0.0 });
-        assert_eq!(looks, 0);
+        // but in the first step, of which nothing tells how the measure bends
+        assert!(looks <= 2, "{looks} looks");
     }
 
     #[test]

@@ -15,6 +15,8 @@ use crate::engine::guard::{self, Found, Look};
 /// A panel turns no further than this (rad).
 const PANEL_TURN: f64 = 1.0;
 const MOST_PANELS: f64 = 1e5;
+/// What a state may be off the constraints by, in units of the tolerance.
+const DRIFT: f64 = 10.0;
 /// Looks that halve a bracket to its final width, and as many that guess.
 const MOST_HALVINGS: usize = 128;
 
@@ -98,6 +100,9 @@ impl<Y: Dae> Ida<Y> {
             self.events.end[k] = course;
             let [begin, end] = self.ends(k);
             let settled = !self.events.passed[k] && guard::stays_below(begin, end);
+            // so near to zero the drift off the constraints may decide
+            let settled =
+                settled && course.value < -DRIFT * self.options.relative_tolerance * course.grain;
             if !settled {
                 self.events.rises[k] = Some(to);
                 doubtful = true;
@@ -106,6 +111,7 @@ impl<Y: Dae> Ida<Y> {
         if !doubtful {
             return Ok(None);
         }
+        self.look_at_end(to)?;
         let panels = self.panels(from, to);
         let mut first: Option<f64> = None;
         for k in 0..self.events.end.len() {
@@ -122,6 +128,19 @@ impl<Y: Dae> Ida<Y> {
             *fired = rise.is_some_and(|rise| rise <= together);
         }
         Ok(Some(first))
+    }
+
+    /// The doubtful functions at the step's end (s), on the constraints.
+    fn look_at_end(&mut self, to: f64) -> Result<(), Error> {
+        if self.solver.system_ref().multipliers() == 0 {
+            return Ok(());
+        }
+        for k in 0..self.events.end.len() {
+            if self.events.rises[k].is_some() {
+                self.events.end[k] = self.look(k, to)?.course;
+            }
+        }
+        Ok(())
     }
 
     /// Width (s) of the bracket in which IDA would leave a root.
@@ -193,13 +212,16 @@ impl<Y: Dae> Ida<Y> {
         Ok(None)
     }
 
-    /// What function `k` is at a time (s) within the step.
+    /// What function `k` is at a time (s) within the step: on the constraints, where samples are
+    /// taken, so that none of them sees an event before it happens.
     fn look(&mut self, k: usize, time: f64) -> Result<Look, Error> {
         self.events.looks += 1;
         let n = self.now.q.len();
-        let y = self.solver.interpolate(time)?[..2 * n].to_vec();
-        let (q, v) = y.split_at(n);
-        let evaluated = self.solver.system().evaluate(State { time, q, v, carried: None });
+        let mut y = self.solver.interpolate(time)?[..2 * n].to_vec();
+        let (q, v) = y.split_at_mut(n);
+        let system = self.solver.system();
+        let evaluated = (system.project(time, q, v))
+            .and_then(|_| system.evaluate(State { time, q, v, carried: None }));
         evaluated.map_err(|source| Error::System { time, source })?;
         Ok(Look { at: time, course: self.rising_course(k).unwrap_or(Course::NONE) })
     }
