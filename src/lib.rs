@@ -19,6 +19,7 @@ pub mod digits;
 pub mod record;
 pub mod case;
 pub mod simulate;
+pub mod advice;
 pub mod certify;
 pub mod post;
 pub mod export;

@@ -1,6 +1,6 @@
 //! From a checked case to a finished run: which arithmetic, which engine, which loop.
 
-use crate::case::{self, Case, EngineName, NormName, Precision, Sampling, SolverPlan};
+use crate::case::{self, Case, Changes, EngineName, NormName, Precision, Sampling, SolverPlan};
 use crate::dae::{Count, Engine};
 use crate::engine::explicit::{self, Explicit};
 use crate::engine::ida::{self, Ida};
@@ -11,6 +11,7 @@ use crate::run::{self, Recorder, RulingCounts, Schedule, Watcher};
 use crate::scalar::{Dual, F256, Scalar};
 use std::convert::Infallible;
 use std::error::Error as StdError;
+use std::path::PathBuf;
 
 /// Why a simulation did not finish.
 #[derive(Debug, thiserror::Error)]
@@ -135,6 +136,29 @@ pub type Ran<R> = (Statistics, Result<(), Error<<R as Recorder>::Error>>);
 pub fn assemble<S: Scalar>(case: &Case) -> Result<Mechanism<S>, case::Error> {
     let model = Model::new(&case.description).map_err(|complaints| case.reject(complaints))?;
     Mechanism::new(model).map_err(|complaints| case.reject(complaints))
+}
+
+/// A case without its clearances, in doubles. A start that is fixed and goes together with
+/// clearances only is let go where the drives prescribe the ideal mechanism: it then chooses no
+/// more than the branch.
+///
+/// # Errors
+/// What is wrong with the ideal mechanism.
+pub fn ideal_case(case: &Case) -> Result<Case, case::Error> {
+    let path = PathBuf::from(format!("{}.toml", case.name));
+    let changed = |more: &mut dyn Iterator<Item = String>| {
+        let doubles = std::iter::once("solver.precision=16".to_owned());
+        let set = doubles.chain(more).filter_map(|change| change.parse().ok()).collect();
+        Case::from_text(&path, &case.text, &Changes { set, ideal: true })
+    };
+    let ideal = changed(&mut std::iter::empty())?;
+    let Err(why) = assemble::<f64>(&ideal) else { return Ok(ideal) };
+    let fixed = case.description.start.iter().filter(|start| start.fixed);
+    let ideal = changed(&mut fixed.map(|start| format!("start.{}.fixed=false", start.body)))?;
+    match assemble::<f64>(&ideal) {
+        Ok(mechanism) if mechanism.freedoms() == 0 => Ok(ideal),
+        _ => Err(why),
+    }
 }
 
 /// Runs a case on the explicit engine in 71-digit arithmetic, at a tolerance of its own.
@@ -314,6 +338,10 @@ fn attributes(case: &Case, mechanism: &Mechanism<f64>) -> Vec<(String, Attribute
         attributes.push((
             format!("ruling_minimum_impact_rate_{name}"),
             Attribute::from(clearance.minimum_impact_rate),
+        ));
+        attributes.push((
+            format!("ruling_maximum_penetration_{name}"),
+            Attribute::from(clearance.maximum_penetration),
         ));
     }
     attributes

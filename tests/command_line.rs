@@ -311,12 +311,14 @@ fn files_that_are_no_cases_and_no_results_end_with_2() {
 }
 
 #[test]
-fn a_run_says_in_one_line_what_it_wrote_and_nothing_else() {
+fn a_run_says_in_one_line_what_it_wrote_and_then_how_far_it_is_true() {
     let desk = Desk::new();
     let said = desk.run(&[&["run", &case("four-bar-a")], &SHORT[..]].concat());
     said.assert_code(0);
     assert!(said.out.starts_with("four-bar-a.h5: four-bar-a, 11 samples, 2 contacts, "));
-    assert_eq!(said.out.lines().count(), 1);
+    let rest: Vec<&str> = said.out.lines().skip(1).collect();
+    assert!(rest[0].starts_with("  true  "), "{rest:?}");
+    assert!(rest.iter().all(|line| line.starts_with("  ")), "{rest:?}");
     assert!(said.errors.is_empty(), "no progress where there is no terminal: {}", said.errors);
     assert_eq!(desk.files(), ["four-bar-a.h5"]);
     let file = desk.open("four-bar-a.h5");

@@ -41,6 +41,13 @@ pub struct CrossCheck {
     pub stopped: Option<String>,
 }
 
+impl CrossCheck {
+    /// Whether the other engine came to the end, and has no other contacts.
+    pub fn confirms(&self) -> bool {
+        self.disagreement.is_none() && self.stopped.is_none()
+    }
+}
+
 /// A contact on which two engines do not agree although they have digits in common.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Disagreement {

@@ -6,6 +6,7 @@
 
 mod cross;
 mod growth;
+mod horizon;
 mod json;
 mod reference;
 mod report;
@@ -13,6 +14,9 @@ mod stored;
 mod tangent;
 
 pub use cross::{CrossCheck, Disagreement, check_run, cross_check};
+pub use horizon::{
+    Companion, Digits, Horizon, LEAST_DIGITS, ONE_DRAW, Reach, Until, Witness, companion, ms,
+};
 pub use reference::{Error, Growth, Stage, Stopped, Watch};
 pub use report::Told;
 pub use stored::NotAReference;

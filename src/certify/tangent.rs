@@ -10,14 +10,13 @@ use super::growth;
 use crate::case::{Case, EngineName, Precision};
 use crate::digits::{MOST_DIGITS, Scales, Sizes};
 use crate::mechanism::Mechanism;
-use crate::record::{Dimension, Series, Values};
 use crate::run::{Schedule, Trajectory, Watcher};
 use crate::scalar::F256;
 use crate::simulate::{self, assemble, run_tangent};
 use std::convert::Infallible;
 
 /// Relative error of a double.
-const DOUBLE: f64 = 1e-16;
+pub(super) const DOUBLE: f64 = 1e-16;
 /// A tangent shorter than this, of a change that is one, is rounding.
 const NOTHING: f64 = 1e-9;
 
@@ -67,19 +66,24 @@ pub fn tangent(
 impl Tangent {
     /// From sample times (s) and scaled lengths. Where there is nothing to disturb, as in a
     /// mechanism without freedom, nothing grows.
-    fn new(times: Vec<f64>, lengths: Vec<f64>) -> Self {
+    pub(super) fn new(times: Vec<f64>, lengths: Vec<f64>) -> Self {
         let at_start = lengths.first().copied().filter(|length| *length > NOTHING).unwrap_or(0.0);
         let over_start = |length: &f64| if at_start > 0.0 { length / at_start } else { 1.0 };
         Tangent { growth: lengths.iter().map(over_start).collect(), times, at_start }
     }
 
     /// Digits that a double-precision run has left at each sample: those that doubles have of the
-    /// start less those that the growth of errors has taken so far.
+    /// start less those that the growth of errors has taken so far; none once all are taken.
     pub fn digits_left(&self) -> Vec<f64> {
+        self.digits_of(DOUBLE)
+    }
+
+    /// The same of a run whose start is off by this share of itself.
+    pub(super) fn digits_of(&self, share: f64) -> Vec<f64> {
         let mut largest: f64 = 0.0;
         let left = self.growth.iter().map(|growth| {
-            largest = largest.max(*growth);
-            (-(DOUBLE * self.at_start * largest).log10()).min(MOST_DIGITS)
+            largest = if growth.is_nan() { f64::INFINITY } else { largest.max(*growth) };
+            (-(share * self.at_start * largest).log10()).clamp(0.0, MOST_DIGITS)
         });
         left.collect()
     }
@@ -104,30 +108,6 @@ impl Tangent {
             (0..).map_while(|k| Some((at(f64::from(k) * period)?, at(f64::from(k + 1) * period)?)));
         ends.map(|(begin, end)| (end / begin).ln()).collect()
     }
-
-    /// The datasets that a tangent adds to a result file.
-    pub fn series(&self) -> Vec<Series> {
-        let series = |name, long_name, values| Series {
-            name,
-            unit: "1",
-            long_name,
-            stored: Values::Real,
-            along: Dimension::Time,
-            values,
-        };
-        vec![
-            series(
-                "error_growth",
-                "how much a small error of the start has grown, in the scales of digits",
-                self.growth.clone(),
-            ),
-            series(
-                "digits_left",
-                "digits that errors of double precision leave",
-                self.digits_left(),
-            ),
-        ]
-    }
 }
 
 #[cfg(test)]
@@ -142,6 +122,12 @@ mod tests {
         for (left, expected) in left.iter().zip([14.0, 13.0, 13.0]) {
             assert!((left - expected).abs() < 1e-12, "{left}");
         }
+    }
+
+    #[test]
+    fn digits_end_with_none_and_never_with_fewer() {
+        let tangent = Tangent::new(vec![0.0, 1.0, 2.0], vec![1.0, 1e20, f64::NAN]);
+        assert_eq!(tangent.digits_left(), [16.0, 0.0, 0.0]);
     }
 
     #[test]

@@ -33,4 +33,7 @@ pub struct Clearance<S> {
     pub cut_tension: bool,
     /// Smallest rate that the damping is scaled by (m/s; key `minimum_impact_rate`).
     pub minimum_impact_rate: S,
+    /// Largest penetration that the law is believed for, as a share of the journal's radius
+    /// (ruling `maximum_penetration`).
+    pub maximum_penetration: f64,
 }

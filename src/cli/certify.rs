@@ -171,6 +171,7 @@ fn write(
         rulings: certificate.statistics.rulings.clone(),
         finished_utc: utc(SystemTime::now()),
         series: certificate.series(),
+        attributes: Vec::new(),
     };
     writer.finish(ending).map_err(Failure::output)?;
     Ok(())

@@ -1,11 +1,15 @@
 //! `freeplay check CASE`
 
 use super::{CaseArguments, Failure};
+use crate::advice::{self, Note, Touch, Turn};
 use crate::case::{AbsoluteTolerance, Case, EngineName, NormName, Precision, SolverPlan};
 use crate::contact;
 use crate::dae::System;
-use crate::mechanism::Mechanism;
+use crate::mechanism::{Mechanism, Observation};
+use crate::model::KeyPath;
+use crate::post::table;
 use crate::simulate::Simulation;
+use serde_json::{Map, Value, json};
 use std::fmt::{self, Display, Write};
 
 /// Arguments of `check`.
@@ -13,19 +17,36 @@ use std::fmt::{self, Display, Write};
 pub struct Arguments {
     #[command(flatten)]
     case: CaseArguments,
+    /// Print JSON.
+    #[arg(long)]
+    json: bool,
 }
 
 /// Says what a case describes; writes nothing.
 pub(super) fn check(arguments: &Arguments) -> Result<(), Failure> {
     let case = arguments.case.read()?;
     let simulation = Simulation::new(&case).map_err(Failure::input)?;
-    super::print(Checked { case: &case, simulation: &simulation })
+    let mechanism = simulation.mechanism();
+    let turn = advice::turn(&case);
+    let touches = advice::touches(mechanism, &turn);
+    let notes = advice::notes(&case, mechanism, &turn, &touches);
+    let start = mechanism.observe(0.0, &mechanism.start().integrals);
+    let checked = Checked { case: &case, simulation: &simulation, start, turn, touches, notes };
+    match arguments.json {
+        true => super::print(format_args!("{:#}\n", checked.json())),
+        false => super::print(checked),
+    }
 }
 
 /// A case in words.
 struct Checked<'a> {
     case: &'a Case,
     simulation: &'a Simulation<'a>,
+    /// The mechanism at the start.
+    start: Observation,
+    turn: Turn,
+    touches: Vec<Touch>,
+    notes: Vec<Note>,
 }
 
 impl Display for Checked<'_> {
@@ -35,9 +56,9 @@ impl Display for Checked<'_> {
         let colon = if title.is_empty() { "" } else { ": " };
         writeln!(f, "{}{colon}{title}", self.case.name)?;
         mechanism_lines(mechanism, f)?;
-        for k in 0..mechanism.modes().len() {
-            clearance_lines(mechanism, k, f)?;
-        }
+        turn_line(&self.turn, f)?;
+        self.clearance_lines(f)?;
+        self.start_lines(f)?;
         let schedule = self.simulation.schedule();
         let (duration, samples): (f64, u64) = (schedule.duration(), schedule.len());
         writeln!(f, "  run          {duration} s, {samples} samples")?;
@@ -45,14 +66,235 @@ impl Display for Checked<'_> {
         if !self.case.defaults.is_empty() {
             writeln!(f, "  defaults taken")?;
         }
-        for default in &self.case.defaults {
-            writeln!(f, "    {} = {}", default.key, default.value)?;
+        for default in defaults(self.case) {
+            writeln!(f, "    {default}")?;
         }
         writeln!(
             f,
             "  units        SI throughout: m, kg, s, rad, N; speed_rpm in revolutions a minute"
-        )
+        )?;
+        for Note { key, text } in &self.notes {
+            writeln!(f, "  note         {key}: {text}")?;
+        }
+        Ok(())
     }
+}
+
+impl Checked<'_> {
+    /// The clearances: what is alike in several is said once, below all that have it.
+    fn clearance_lines(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mechanism = self.simulation.mechanism();
+        let told: Vec<String> =
+            (0..mechanism.modes().len()).map(|k| law_lines(mechanism, k)).collect();
+        for (k, law) in told.iter().enumerate() {
+            if told[..k].contains(law) {
+                continue;
+            }
+            let alike: Vec<usize> = (k..told.len()).filter(|other| told[*other] == *law).collect();
+            for k in &alike {
+                self.clearance_line(*k, f)?;
+            }
+            if alike.len() > 1 {
+                writeln!(f, "    alike in these {}:", alike.len())?;
+            }
+            f.write_str(law)?;
+        }
+        Ok(())
+    }
+
+    /// Where a clearance is, and how it starts.
+    fn clearance_line(&self, k: usize, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mechanism = self.simulation.mechanism();
+        let model = mechanism.model();
+        let pair = &model.clearances()[k].pair;
+        let (bearing, journal) = (model.body_name(pair.i), model.body_name(pair.j));
+        let offset = self.start.clearances[k].eccentricity;
+        let mode = self.start_mode(k);
+        let name = &model.names().clearances[k];
+        writeln!(f, "  clearance    {name}: journal on {journal} in bearing on {bearing}")?;
+        writeln!(f, "    starts in {mode}, eccentricity {offset:.6e} m")?;
+        match self.touches.iter().find(|touch| touch.clearance == k) {
+            Some(touch) => writeln!(
+                f,
+                "    an impact at {:.2e} m/s lasts about {:.1e} s and goes {:.1e} m deep ({:.3} kg)",
+                touch.speed, touch.duration, touch.depth, touch.mass
+            ),
+            None => Ok(()),
+        }
+    }
+
+    fn start_mode(&self, k: usize) -> &'static str {
+        let touching = self.simulation.mechanism().modes()[k] != crate::clearance::Mode::Flight;
+        if touching { "contact" } else { "flight" }
+    }
+
+    /// Where each body starts, as it was assembled.
+    fn start_lines(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let heads = ["start", "x (m)", "y (m)", "angle (rad)", "(deg)"];
+        let rates = ["x' (m/s)", "y' (m/s)", "angle' (rad/s)"];
+        let heads = heads.iter().chain(&rates).map(|head| (*head).to_owned()).collect();
+        let names = &self.simulation.mechanism().model().names().bodies;
+        let rows = names.iter().zip(&self.start.bodies).map(|(name, body)| {
+            let ([x, y], [vx, vy]) = (body.position, body.velocity);
+            let numbers =
+                [x, y, body.angle, body.angle.to_degrees(), vx, vy, body.angular_velocity];
+            let numbers = numbers.into_iter().map(|number| plain(number, 7));
+            std::iter::once(name.clone()).chain(numbers).collect()
+        });
+        for line in table(heads, rows.collect(), 1).trim_fmt().lines() {
+            writeln!(f, "  {}", line.trim_end())?;
+        }
+        Ok(())
+    }
+
+    /// The same for programs.
+    fn json(&self) -> Value {
+        let mechanism = self.simulation.mechanism();
+        let names = mechanism.model().names();
+        let start = names.bodies.iter().zip(&self.start.bodies).map(|(name, body)| {
+            let told = json!({
+                "x": body.position[0],
+                "y": body.position[1],
+                "angle": body.angle,
+                "velocity_x": body.velocity[0],
+                "velocity_y": body.velocity[1],
+                "angular_velocity": body.angular_velocity,
+            });
+            (name.clone(), told)
+        });
+        let clearances = (0..names.clearances.len())
+            .map(|k| (names.clearances[k].clone(), self.clearance_json(k)));
+        let driven = (0..names.bodies.len()).filter(|body| mechanism.is_driven(*body));
+        let defaults = self.case.defaults.iter();
+        let defaults = defaults.map(|default| (default.key.to_string(), json!(default.value)));
+        let schedule = self.simulation.schedule();
+        let notes = self.notes.iter().map(|note| json!({ "key": note.key, "text": note.text }));
+        json!({
+            "case_name": self.case.name,
+            "title": self.case.title,
+            "units": "m, kg, s, rad, N",
+            "bodies": names.bodies,
+            "driven": driven.map(|body| &names.bodies[body]).collect::<Vec<_>>(),
+            "joints": names.joints,
+            "drives": names.drives,
+            "freedoms": mechanism.freedoms(),
+            "coordinates": mechanism.coordinates(),
+            "constraints": mechanism.multipliers(),
+            "start": Map::from_iter(start),
+            "clearances": Map::from_iter(clearances),
+            "turn": turn_json(&self.turn),
+            "duration": schedule.duration::<f64>(),
+            "samples": schedule.len(),
+            "defaults": Map::from_iter(defaults),
+            "notes": notes.collect::<Vec<_>>(),
+        })
+    }
+
+    fn clearance_json(&self, k: usize) -> Value {
+        let clearance = &self.simulation.mechanism().model().clearances()[k];
+        let touch = self.touches.iter().find(|touch| touch.clearance == k);
+        json!({
+            "radial": clearance.radial,
+            "bearing_radius": clearance.bearing_radius,
+            "journal_radius": clearance.journal_radius,
+            "stiffness": clearance.normal.stiffness(),
+            "exponent": clearance.normal.exponent(),
+            "damping_weight": clearance.normal.damping_weight(),
+            "rebound": contact::rebound(clearance.normal.damping_weight()),
+            "friction": clearance.friction.is_some(),
+            "tension": if clearance.cut_tension { "cut" } else { "keep" },
+            "minimum_impact_rate": clearance.minimum_impact_rate,
+            "maximum_penetration": clearance.maximum_penetration,
+            "starts_in": self.start_mode(k),
+            "eccentricity": self.start.clearances[k].eccentricity,
+            "impact": touch.map(|touch| json!({
+                "speed": touch.speed,
+                "mass": touch.mass,
+                "duration": touch.duration,
+                "depth": touch.depth,
+            })),
+        })
+    }
+}
+
+/// The defaults taken; those that several joints share are told once.
+fn defaults(case: &Case) -> Vec<String> {
+    let mut told: Vec<(Vec<String>, String)> = Vec::new();
+    for default in &case.defaults {
+        let keys = default.key.keys();
+        let (joint, rest) = match keys {
+            [list, joint, rest @ ..] if list == "joints" => (vec![joint.clone()], rest),
+            _ => (Vec::new(), keys),
+        };
+        let rest = format!("{} = {}", KeyPath::new(rest.iter().map(String::as_str)), default.value);
+        match told.iter_mut().find(|(joints, known)| !joints.is_empty() && *known == rest) {
+            Some((joints, _)) => joints.extend(joint),
+            None => told.push((joint, rest)),
+        }
+    }
+    let line = |(joints, rest): (Vec<String>, String)| match &joints[..] {
+        [] => rest,
+        [joint] => format!("joints.{joint}.{rest}"),
+        joints => format!("joints.{{{}}}.{rest}", joints.join(", ")),
+    };
+    told.into_iter().map(line).collect()
+}
+
+/// Whether the ideal mechanism turns.
+fn turn_line(turn: &Turn, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+    write!(f, "  turning      ")?;
+    match turn {
+        Turn::Whole { span, .. } => {
+            writeln!(f, "the ideal mechanism goes round, {} ms", tidy(span * 1e3))
+        }
+        Turn::Locks { time, .. } => {
+            writeln!(f, "the ideal mechanism LOCKS at {:.4} ms: see the note below", time * 1e3)
+        }
+        Turn::Free { freedoms } => writeln!(
+            f,
+            "not tried: the ideal mechanism has {freedoms} freedom{} that no drive prescribes",
+            if *freedoms == 1 { "" } else { "s" }
+        ),
+        Turn::Still => writeln!(f, "no drive turns"),
+        Turn::NotAssembled { .. } => {
+            writeln!(f, "not tried: without its clearances the mechanism does not go together")
+        }
+    }
+}
+
+fn turn_json(turn: &Turn) -> Value {
+    match turn {
+        Turn::Whole { span, forces } => json!({
+            "goes_round": true, "span": span, "largest_forces": forces_json(forces),
+        }),
+        Turn::Locks { time, drives, why, forces } => json!({
+            "goes_round": false,
+            "locks_at": time,
+            "drive_angles": forces_json(drives),
+            "why": why,
+            "largest_forces": forces_json(forces),
+        }),
+        Turn::Free { freedoms } => json!({ "goes_round": null, "freedoms": freedoms }),
+        Turn::Still => json!({ "goes_round": null, "drives_turn": false }),
+        Turn::NotAssembled { why } => json!({ "goes_round": null, "why": why }),
+    }
+}
+
+/// Numbers by their names.
+fn forces_json(named: &[(String, f64)]) -> Value {
+    Map::from_iter(named.iter().map(|(name, value)| (name.clone(), json!(value)))).into()
+}
+
+/// A number to so many significant digits, zero where it is rounding.
+fn plain(number: f64, digits: usize) -> String {
+    if number.abs() < 1e-12 {
+        return "0".to_owned();
+    }
+    let exponent = number.abs().log10().floor() as i32;
+    if !(-4..7).contains(&exponent) {
+        return format!("{number:.*e}", digits - 1);
+    }
+    format!("{number:.*}", (digits as i32 - 1 - exponent).max(0) as usize)
 }
 
 fn solver_line(solver: &SolverPlan, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -110,29 +352,23 @@ fn mechanism_lines(mechanism: &Mechanism<f64>, f: &mut fmt::Formatter<'_>) -> fm
     )
 }
 
-fn clearance_lines(
-    mechanism: &Mechanism<f64>,
-    k: usize,
-    f: &mut fmt::Formatter<'_>,
-) -> fmt::Result {
-    let model = mechanism.model();
-    let clearance = &model.clearances()[k];
-    let pair = &clearance.pair;
-    let (bearing, journal) = (model.body_name(pair.i), model.body_name(pair.j));
+/// What a clearance is, without where it is.
+fn law_lines(mechanism: &Mechanism<f64>, k: usize) -> String {
+    let mut lines = String::new();
+    // writing to a string cannot fail
+    let _ = write_law(mechanism, k, &mut lines);
+    lines
+}
+
+fn write_law(mechanism: &Mechanism<f64>, k: usize, f: &mut String) -> fmt::Result {
+    let clearance = &mechanism.model().clearances()[k];
     writeln!(
         f,
-        "  clearance    {}: journal on {journal} in bearing on {bearing}",
-        model.names().clearances[k]
-    )?;
-    let mut line = String::new();
-    write!(
-        line,
-        "radial clearance {:e} m, bearing {:e} m, journal {:e} m",
+        "    radial clearance {:e} m, bearing {:e} m, journal {:e} m",
         tidy(clearance.radial),
         tidy(clearance.bearing_radius),
         tidy(clearance.journal_radius)
     )?;
-    writeln!(f, "    {line}")?;
     let law = &clearance.normal;
     writeln!(
         f,
@@ -151,9 +387,10 @@ fn clearance_lines(
         "    approaches slower than {:e} m/s count as that fast",
         clearance.minimum_impact_rate
     )?;
-    let start = mechanism.observe(0.0, &mechanism.start().integrals);
-    let offset = start.clearances[k].eccentricity;
-    let touching = mechanism.modes()[k] != crate::clearance::Mode::Flight;
-    let mode = if touching { "contact" } else { "flight" };
-    writeln!(f, "    starts in {mode}, eccentricity {offset:.6e} m")
+    writeln!(
+        f,
+        "    a run stops where the journal is deeper than {:e} m, {} of its radius",
+        tidy(clearance.maximum_penetration * clearance.journal_radius),
+        clearance.maximum_penetration
+    )
 }

@@ -9,10 +9,17 @@ use std::path::PathBuf;
 pub struct Arguments {
     /// Result file (HDF5).
     file: PathBuf,
+    /// Print JSON.
+    #[arg(long)]
+    json: bool,
 }
 
 /// Says what a result file holds and how it was made.
 pub(super) fn info(arguments: &Arguments) -> Result<(), Failure> {
     let overview = ResultFile::open(&arguments.file).and_then(|file| Overview::of(&file));
-    super::print(overview.map_err(Failure::input)?)
+    let overview = overview.map_err(Failure::input)?;
+    match arguments.json {
+        true => super::print(format_args!("{:#}\n", overview.to_json())),
+        false => super::print(overview),
+    }
 }

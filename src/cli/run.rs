@@ -2,13 +2,19 @@
 
 use super::signals::Signals;
 use super::{CaseArguments, Failure, chain};
-use crate::case::Case;
-use crate::certify::{self, CrossCheck, Disagreement, Tangent};
+use crate::case::{Case, Precision};
+use crate::certify::{
+    self, Companion, CrossCheck, Disagreement, Horizon, LEAST_DIGITS, ONE_DRAW, Reach, Until,
+    Witness, ms,
+};
+use crate::digits::Sizes;
 use crate::mechanism::Observation;
-use crate::record::{self, Ending, Outcome, Writer, utc};
-use crate::run::{Contact, Event, Peak, Progress, Recorder, Revolution, Trajectory};
+use crate::record::{self, Ending, Outcome, ResultFile, Writer, utc};
+use crate::run::{Contact, Event, Peak, Progress, Recorder, Revolution, Schedule, Trajectory};
 use crate::simulate::{self, Simulation, Statistics};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use serde_json::{Value, json};
+use std::fmt::Write as _;
 use std::path::PathBuf;
 use std::time::{Instant, SystemTime};
 
@@ -26,9 +32,16 @@ pub struct Arguments {
     /// Replace the output if it exists.
     #[arg(long)]
     force: bool,
-    /// Carry a tangent along: how errors grow, and how many digits doubles have left.
-    #[arg(long)]
+    /// Follow the growth of errors to the end of the run, not only to where its numbers end to
+    /// mean something; of mechanisms without contacts and runs in 71 digits too.
+    #[arg(long, conflicts_with = "no_tangent")]
     tangent: bool,
+    /// Do not follow the growth of errors: faster, but nobody knows how far the run is true.
+    #[arg(long)]
+    no_tangent: bool,
+    /// Print JSON.
+    #[arg(long)]
+    json: bool,
     /// Follow the case with the other engine too: fail with exit code 1 where one has a contact that
     /// the other has not, while the two agree to three digits.
     #[arg(long)]
@@ -47,31 +60,23 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let header = simulate::header(&case, simulation.mechanism(), utc(SystemTime::now()));
     let writer = Writer::create(&output, header, arguments.force).map_err(Failure::output)?;
     let signals = Signals::new().map_err(Failure::output)?;
-    let tangent = arguments.tangent.then_some(&case);
+    let tangent = Carried::of(arguments, &case, &simulation);
     let checked = arguments.check.then_some(&case);
-    let told = simulate_into(writer, simulation, &signals, arguments.quiet, [tangent, checked])?;
-    super::print(format_args!(
-        "{}: {}, {} samples, {} contacts, {} steps in {:.2} s\n",
-        told.path.display(),
-        case.name,
-        told.progress.samples,
-        told.progress.contacts,
-        told.progress.steps,
-        begun.elapsed().as_secs_f64()
-    ))?;
-    if let Some(growth) = told.growth {
-        super::print(growth)?;
+    let told = simulate_into(writer, simulation, &signals, arguments.quiet, tangent, checked)?;
+    let seconds = begun.elapsed().as_secs_f64();
+    match arguments.json {
+        true => super::print(format_args!("{:#}\n", told.json(&case, seconds)?))?,
+        false => super::print(told.words(&case, seconds)?)?,
     }
-    told.check.map_or(Ok(()), tell_check)
+    told.check.map_or(Ok(()), confirmed)
 }
 
-/// Tells what the other engine makes of the case, and fails where the two do not agree.
-fn tell_check(check: CrossCheck) -> Result<(), Failure> {
-    let agreed = check.to_string();
+/// Fails where the other engine does not agree.
+fn confirmed(check: CrossCheck) -> Result<(), Failure> {
     let error = match (check.disagreement, check.stopped) {
         (Some(disagreement), _) => NotConfirmed::Engines(disagreement),
         (None, Some(reason)) => NotConfirmed::Stopped { until: check.until, reason },
-        (None, None) => return super::print(format_args!("  {agreed}\n")),
+        (None, None) => return Ok(()),
     };
     Err(Failure::with(1, error))
 }
@@ -87,30 +92,135 @@ enum NotConfirmed {
     Stopped { until: f64, reason: String },
 }
 
-/// What a finished run tells in one line.
+/// Whether errors are followed along a run, and how far.
+#[derive(Clone, Copy)]
+enum Carried<'a> {
+    /// Not at all.
+    No,
+    /// Until its numbers mean nothing any more.
+    ToTheHorizon(&'a Case),
+    /// However large they are.
+    ToTheEnd(&'a Case),
+}
+
+impl<'a> Carried<'a> {
+    /// By default where there are contacts; not of a run in 71 digits, whose companion takes
+    /// several times as long as the run.
+    fn of(arguments: &Arguments, case: &'a Case, simulation: &Simulation<'_>) -> Self {
+        let touches = !simulation.mechanism().modes().is_empty();
+        let doubles = case.plan.solver.precision == Precision::Double;
+        match (arguments.tangent, arguments.no_tangent) {
+            (true, _) => Carried::ToTheEnd(case),
+            (false, false) if touches && doubles => Carried::ToTheHorizon(case),
+            _ => Carried::No,
+        }
+    }
+}
+
+/// What a finished run tells.
 struct Told {
     path: PathBuf,
     progress: Progress,
-    /// What a tangent says, if one was asked for.
-    growth: Option<String>,
+    /// What is known of its errors, if they were followed.
+    companion: Option<Companion>,
     /// What the other engine says, if it was asked.
     check: Option<CrossCheck>,
+    /// Time of a revolution of the first drive (s).
+    revolution: Option<f64>,
 }
 
-/// Runs a simulation into a writer, and finishes the file however the run ends. `tangent` is the
-/// case whose tangent is to be carried along, `checked` that which the other engine is to follow.
+impl Told {
+    fn words(&self, case: &Case, seconds: f64) -> Result<String, Failure> {
+        let mut words = format!(
+            "{}: {}, {} samples, {} contacts, {} steps in {seconds:.2} s\n",
+            self.path.display(),
+            case.name,
+            self.progress.samples,
+            self.progress.contacts,
+            self.progress.steps,
+        );
+        if let Some(companion) = &self.companion {
+            words += &horizon_words(companion, self.revolution);
+            words += &format!("  to quote     \"{}\"\n", self.sentence(companion)?);
+        }
+        if let Some(check) = self.check.as_ref().filter(|check| check.confirms()) {
+            words += &format!("  {check}\n");
+        }
+        Ok(words)
+    }
+
+    fn sentence(&self, companion: &Companion) -> Result<String, Failure> {
+        let file = ResultFile::open(&self.path).map_err(Failure::output)?;
+        Ok(companion.horizon().sentence(&file))
+    }
+
+    fn json(&self, case: &Case, seconds: f64) -> Result<Value, Failure> {
+        let horizon = self.companion.as_ref().map(|companion| {
+            let Horizon { state, forces, doubles, at_end, end, stopped, .. } = companion.horizon();
+            let period = self.revolution.unwrap_or(1.0);
+            Ok::<_, Failure>(json!({
+                "unit": "s",
+                "least_digits": LEAST_DIGITS,
+                "state": state,
+                "forces": forces,
+                "doubles": doubles,
+                "end": end,
+                "digits_at_end": at_end.map(|digits| {
+                    json!({ "state": digits.state, "forces": digits.forces })
+                }),
+                "stopped": stopped,
+                "parts_early": companion.parts_early,
+                "growth_exponent": companion.tangent.exponent_per(period),
+                "growth_exponents": companion.tangent.exponents(period),
+                "growth_period": period,
+                "sentence": self.sentence(companion)?,
+            }))
+        });
+        Ok(json!({
+            "file": self.path.to_string_lossy(),
+            "case_name": case.name,
+            "samples": self.progress.samples,
+            "contacts": self.progress.contacts,
+            "events": self.progress.events,
+            "steps": self.progress.steps,
+            "seconds": seconds,
+            "horizon": horizon.transpose()?,
+            "check": self.check.as_ref().map(check_json),
+        }))
+    }
+}
+
+/// What the other engine says of a run.
+fn check_json(check: &CrossCheck) -> Value {
+    json!({
+        "unit": "s",
+        "confirmed": check.confirms(),
+        "until": check.until,
+        "digits": check.digits,
+        "events": check.events,
+        "farthest": check.farthest,
+        "disagreement": check.disagreement.as_ref().map(Disagreement::to_string),
+        "stopped": check.stopped,
+    })
+}
+
+/// Runs a simulation into a writer, and finishes the file however the run ends; `checked` is the
+/// case that the other engine is to follow.
 fn simulate_into(
     writer: Writer,
     simulation: Simulation<'_>,
     signals: &Signals,
     quiet: bool,
-    [tangent, checked]: [Option<&Case>; 2],
+    tangent: Carried<'_>,
+    checked: Option<&Case>,
 ) -> Result<Told, Failure> {
     let schedule = simulation.schedule().clone();
     let revolution = simulation.mechanism().revolution();
+    let sizes = Sizes::of(simulation.mechanism());
     let duration: f64 = schedule.duration();
+    let witness = (!matches!(tangent, Carried::No)).then(|| Witness::new(sizes));
     let own = checked.map(|_| Trajectory::default());
-    let mut timed = Timed { writer, times: Vec::new(), kept: tangent.is_some(), own };
+    let mut witnessed = Witnessed { writer, witness, own };
     let bar = progress_bar(quiet);
     let begun = Instant::now();
     let mut last = Progress::default();
@@ -119,30 +229,37 @@ fn simulate_into(
         tell(&bar, progress, duration, begun);
         signals.flow()
     };
-    let (statistics, ran) = simulation.run(&mut timed, &mut watch);
-    let Timed { writer, times, own, .. } = timed;
-    let mut series = Vec::new();
-    let (mut growth, mut check) = (None, None);
-    let ran = ran.and_then(|()| {
-        if let (Some(case), Some(own)) = (checked, &own) {
-            let mut flow = |_: &Progress| signals.flow();
-            let checked = certify::check_run(case, own, &mut flow);
-            check = Some(checked.map_err(simulate::Error::forget_recorder)?);
-        }
-        let Some(case) = tangent else { return Ok(()) };
-        let mut flow = |_: &Progress| signals.flow();
-        let tangent = certify::tangent(case, &schedule.at(times), &mut flow)
-            .map_err(simulate::Error::forget_recorder)?;
-        growth = Some(growth_words(&tangent, revolution));
-        series = tangent.series();
-        Ok(())
+    let (statistics, ran) = simulation.run(&mut witnessed, &mut watch);
+    let Witnessed { writer, witness, own } = witnessed;
+    let followed = ran.and_then(|()| {
+        let companion = match witness {
+            Some(witness) => follow(tangent, &schedule, &witness, last.steps, signals)?,
+            None => None,
+        };
+        let check = match checked.zip(own) {
+            Some((case, own)) => {
+                let mut flow = |_: &Progress| signals.flow();
+                let check = certify::check_run(case, &own, &mut flow);
+                Some(check.map_err(simulate::Error::forget_recorder)?)
+            }
+            None => None,
+        };
+        Ok((companion, check))
     });
     bar.finish_and_clear();
-    let reason = ran.as_ref().err().map(chain);
-    let finished = writer.finish(Ending { series, ..ending(statistics, reason) });
-    let Err(error) = ran else {
-        let path = finished.map_err(Failure::output)?;
-        return Ok(Told { path, progress: last, growth, check });
+    let reason = followed.as_ref().err().map(chain);
+    let companion = followed.as_ref().ok().and_then(|(companion, _)| companion.as_ref());
+    let finished = writer.finish(Ending {
+        series: companion.map(Companion::series).unwrap_or_default(),
+        attributes: companion.map(Companion::attributes).unwrap_or_default(),
+        ..ending(statistics, reason)
+    });
+    let error = match followed {
+        Ok((companion, check)) => {
+            let path = finished.map_err(Failure::output)?;
+            return Ok(Told { path, progress: last, companion, check, revolution });
+        }
+        Err(error) => error,
     };
     let rest = match finished {
         Ok(path) => format!("what was simulated until then is in {}", path.display()),
@@ -156,16 +273,34 @@ fn simulate_into(
     Err(Failure { code, error: Box::new(error), rest: Some(rest) })
 }
 
-/// A writer, and the times of the samples that went to it where they are kept.
-struct Timed {
+/// Follows the errors of a run that is done.
+fn follow(
+    tangent: Carried<'_>,
+    schedule: &Schedule,
+    witness: &Witness,
+    run_steps: u64,
+    signals: &Signals,
+) -> Result<Option<Companion>, simulate::Error<record::Error>> {
+    let (case, to_the_end) = match tangent {
+        Carried::No => return Ok(None),
+        Carried::ToTheHorizon(case) => (case, false),
+        Carried::ToTheEnd(case) => (case, true),
+    };
+    let mut flow = |_: &Progress| signals.flow();
+    let reach = Reach { to_the_end, run_steps };
+    let companion = certify::companion(case, schedule, witness, reach, &mut flow);
+    companion.map(Some).map_err(simulate::Error::forget_recorder)
+}
+
+/// A writer, and who takes note of what goes to it where errors are followed.
+struct Witnessed {
     writer: Writer,
-    times: Vec<f64>,
-    kept: bool,
+    witness: Option<Witness>,
     /// What went to the writer, where the other engine is to be held against it.
     own: Option<Trajectory>,
 }
 
-impl Timed {
+impl Witnessed {
     /// Keeps something for the other engine.
     fn keep(&mut self, keep: impl FnOnce(&mut Trajectory)) {
         if let Some(own) = &mut self.own {
@@ -174,12 +309,12 @@ impl Timed {
     }
 }
 
-impl Recorder for Timed {
+impl Recorder for Witnessed {
     type Error = record::Error;
 
     fn sample(&mut self, observation: &Observation) -> Result<(), record::Error> {
-        if self.kept {
-            self.times.push(observation.time);
+        if let Some(witness) = &mut self.witness {
+            witness.take(observation);
         }
         self.keep(|own| own.samples.push(observation.clone()));
         self.writer.sample(observation)
@@ -192,6 +327,9 @@ impl Recorder for Timed {
 
     fn contact(&mut self, contact: Contact) -> Result<(), record::Error> {
         self.keep(|own| own.contacts.push(contact));
+        if let Some(witness) = &mut self.witness {
+            witness.take_contact(contact);
+        }
         self.writer.contact(contact)
     }
 
@@ -208,23 +346,83 @@ impl Recorder for Timed {
     }
 }
 
+/// Digits whose end is told.
+const TOLD: [f64; 3] = [9.0, 6.0, 3.0];
+
+/// How far a run is true, and how its errors grow.
+fn horizon_words(companion: &Companion, revolution: Option<f64>) -> String {
+    let mut words = String::new();
+    let kinds: [(&str, &dyn Fn(f64) -> Until); 2] = [
+        ("angles, rates, velocities, clearance vectors", &|digits| companion.state_until(digits)),
+        ("forces, torques and their peaks", &|digits| companion.forces_until(digits)),
+    ];
+    // writing to a string cannot fail
+    for (what, until) in kinds {
+        let held: Vec<String> = (TOLD.iter())
+            .filter_map(|digits| match until(*digits) {
+                Until::Time(time) if time > 0.0 => {
+                    Some(format!("{digits} digits until {}", ms(time)))
+                }
+                _ => None,
+            })
+            .collect();
+        let held = if held.is_empty() { held.concat() } else { format!(" ({})", held.join(", ")) };
+        let _ = match until(LEAST_DIGITS) {
+            Until::End => writeln!(words, "  true         to the end: {what}{held}"),
+            Until::Time(time) => writeln!(words, "  true         until {}: {what}{held}", ms(time)),
+            Until::Never => writeln!(words, "  true         not to one digit: {what}"),
+        };
+    }
+    let horizon = companion.horizon();
+    let _ = match (&companion.stopped, horizon.is_whole()) {
+        (_, true) => Ok(()),
+        (None, false) => writeln!(words, "  beyond       a number is {ONE_DRAW}"),
+        (Some(why), false) => {
+            writeln!(
+                words,
+                "  beyond       not known: the run that follows the errors stopped: {why}"
+            )
+        }
+    };
+    if let Some(time) = companion.parts_early {
+        let _ = writeln!(
+            words,
+            "  doubt        at {} the run parts from its companion although errors have not grown \
+             that much: one of them may have missed an event; compare with another tolerance or \
+             engine",
+            ms(time)
+        );
+    }
+    let _ = match companion.doubles_until() {
+        Until::Time(time) if companion.stopped.is_none() => writeln!(
+            words,
+            "  doubles      no double-precision run of this case means anything beyond {}",
+            ms(time)
+        ),
+        _ => Ok(()),
+    };
+    words + &growth_words(companion, revolution)
+}
+
 /// The growth of errors, per revolution or per second.
-fn growth_words(tangent: &Tangent, revolution: Option<f64>) -> String {
-    let left = tangent.digits_left().last().copied().unwrap_or(f64::NAN);
-    let left = if left >= 0.05 { format!("{left:.1} digits") } else { "no digits".to_owned() };
+fn growth_words(companion: &Companion, revolution: Option<f64>) -> String {
+    let tangent = &companion.tangent;
     let period = revolution.unwrap_or(1.0);
     let per = if revolution.is_some() { "revolution" } else { "second" };
     let Some(exponent) = tangent.exponent_per(period) else {
-        return "  errors do not grow\n".to_owned();
+        return "  errors       do not grow\n".to_owned();
     };
     let each: Vec<String> =
         tangent.exponents(period).iter().map(|exponent| format!("{exponent:.2}")).collect();
     let each = if each.is_empty() { String::new() } else { format!(" ({})", each.join(", ")) };
+    let whole = tangent.times.last().is_some_and(|time| *time >= companion.end);
+    let until = match tangent.times.last() {
+        Some(time) if !whole => format!(", followed until {}", ms(*time)),
+        _ => String::new(),
+    };
     let word = if exponent < 0.0 { "shrink" } else { "grow" };
-    format!(
-        "  errors {word} by a factor e^{exponent:.2} per {per}{each}; errors of double precision \
-         leave {left} of the state at the end\n"
-    )
+    let exponent = exponent.abs();
+    format!("  errors       {word} by a factor e^{exponent:.2} per {per}{each}{until}\n")
 }
 
 fn ending(statistics: Statistics, failure: Option<String>) -> Ending {
@@ -233,7 +431,14 @@ fn ending(statistics: Statistics, failure: Option<String>) -> Ending {
         Some(reason) => Outcome::Failed { reason },
     };
     let Statistics { engine: counts, rulings } = statistics;
-    Ending { outcome, counts, rulings, finished_utc: utc(SystemTime::now()), series: Vec::new() }
+    Ending {
+        outcome,
+        counts,
+        rulings,
+        finished_utc: utc(SystemTime::now()),
+        series: Vec::new(),
+        attributes: Vec::new(),
+    }
 }
 
 fn progress_bar(quiet: bool) -> ProgressBar {

@@ -10,6 +10,7 @@ use super::series::{Aligned, Certificate, Series};
 use super::source::{Source, Trajectory, case_in};
 use super::{Error, mechanism, note, scale};
 use crate::case::{Case, Changes};
+use crate::certify::Horizon;
 use crate::digits::{Scales, Sizes};
 use crate::mechanism::Mechanism;
 use crate::record::{self, DATASETS, ResultFile};
@@ -46,6 +47,8 @@ pub struct Side {
     pub mapping: Vec<MappedName>,
     /// Names of its columns that are not.
     pub unused: Vec<String>,
+    /// How far it is true, where it tells.
+    pub horizon: Option<Horizon>,
 }
 
 /// A column of another program and what it is of ours.
@@ -292,6 +295,11 @@ impl<'a> Read<'a> {
         self.source.result()
     }
 
+    /// How far a result is true, where it tells.
+    pub fn horizon(&self) -> Option<Horizon> {
+        Horizon::of(self.result()?).ok().flatten()
+    }
+
     /// The table of another program and how it is mapped.
     pub fn foreign(&self) -> Option<(&'a ForeignTable, &Mapping)> {
         match (self.source, &self.mapping) {
@@ -328,6 +336,7 @@ impl<'a> Read<'a> {
             span: self.span(),
             mapping,
             unused,
+            horizon: self.horizon(),
         }
     }
 }
@@ -478,6 +487,13 @@ fn identity(a: &ResultFile, b: &ResultFile, values: &Aligned) -> Result<Identity
         return Ok(found);
     }
     for dataset in &DATASETS {
+        // files of older programs do not have all of them
+        let has = |file: &ResultFile| file.dataset(dataset.name).is_ok();
+        match (has(a), has(b)) {
+            (true, true) => {}
+            (false, false) => continue,
+            _ => return Ok(found),
+        }
         let (a, b) = (a.table(dataset.name)?.values, b.table(dataset.name)?.values);
         let open = |a: f64, b: f64| dataset.name == "contact_end" && a.is_nan() && b.is_nan();
         let same = |(a, b): (&f64, &f64)| a == b || open(*a, *b);

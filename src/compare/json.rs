@@ -162,5 +162,11 @@ fn side(side: &Side) -> Value {
         "span": side.span,
         "mapping": side.mapping.iter().map(mapped).collect::<Vec<_>>(),
         "not_compared": side.unused,
+        "horizon": side.horizon.as_ref().map(|horizon| json!({
+            "state": horizon.state,
+            "forces": horizon.forces,
+            "end": horizon.end,
+            "certified": horizon.certified,
+        })),
     })
 }

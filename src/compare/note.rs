@@ -3,6 +3,7 @@
 use super::comparison::Read;
 use super::quantity::{Parts, Quantity};
 use super::series::{Aligned, Series};
+use crate::certify::{ONE_DRAW, ms};
 
 /// Columns written with fewer significant digits are told.
 const FEW_DIGITS: usize = 12;
@@ -21,6 +22,7 @@ pub fn notes(
     let mut notes = Vec::new();
     for read in [theirs, reference] {
         notes.extend(notes_on(read));
+        notes.extend(beyond(read, values));
     }
     notes.extend(repeated(theirs));
     notes.extend(turned(values, series, parts));
@@ -43,6 +45,22 @@ fn notes_on(read: &Read<'_>) -> Vec<String> {
         notes.push(format!("{path} is written with {most} significant digits: no more can agree"));
     }
     notes
+}
+
+/// A result that is looked at beyond its horizon.
+fn beyond(read: &Read<'_>, values: &Aligned) -> Option<String> {
+    let horizon = read.horizon()?;
+    let last = values.times.last()?;
+    let until = horizon.state.min(horizon.forces);
+    (*last > until && until < horizon.end).then(|| {
+        format!(
+            "{} means something until {} only, its forces until {}; behind that (*) its numbers \
+             are each {ONE_DRAW}, and so is how far they agree",
+            read.path().display(),
+            ms(horizon.state),
+            ms(horizon.forces)
+        )
+    })
 }
 
 /// Times that stand twice.

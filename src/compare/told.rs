@@ -143,9 +143,19 @@ impl Comparison {
                 let worst = grades[rows.clone()].iter().copied().reduce(Grade::worse);
                 worst.map_or(String::new(), |grade| grade.told())
             });
-            std::iter::once(seconds(series.times[rows.end - 1])).chain(fewest).collect()
+            let until = series.times[rows.end - 1];
+            let mark = if self.is_beyond(until) { " *" } else { "" };
+            std::iter::once(seconds(until) + mark).chain(fewest).collect()
         };
         table(heads.collect(), stretches(&series.times).into_iter().map(row).collect(), 0)
+    }
+
+    /// Whether a time (s) lies beyond the horizon of either.
+    fn is_beyond(&self, time: f64) -> bool {
+        [&self.theirs, &self.reference].iter().any(|side| {
+            let known = side.horizon.as_ref();
+            known.is_some_and(|horizon| horizon.state < horizon.end && time > horizon.state)
+        })
     }
 
     fn hold_lines(&self, f: &mut Formatter<'_>) -> fmt::Result {

@@ -110,6 +110,21 @@ impl Largest {
     }
 }
 
+impl Largest {
+    /// The larger of each. Extents of two parts of a path do not tell that of both: of the parts
+    /// that single samples are, the extent is none.
+    pub fn or(&self, other: &Largest) -> Largest {
+        Largest {
+            angular_velocity: self.angular_velocity.max(other.angular_velocity),
+            velocity: self.velocity.max(other.velocity),
+            position: self.position.max(other.position),
+            force: self.force.max(other.force),
+            torque: self.torque.max(other.torque),
+            moment: self.moment.max(other.moment),
+        }
+    }
+}
+
 /// Largest extent of the path of any mass centre, in x or y (m).
 fn largest_extent(samples: &[Observation]) -> f64 {
     let bodies = samples.first().map_or(0, |sample| sample.bodies.len());

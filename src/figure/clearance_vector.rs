@@ -1,7 +1,7 @@
 //! Clearance vector of each joint over time (the paper's figure 4): its components, and its
 //! length, the eccentricity.
 
-use super::over_time::{Curve, MOST_ROWS, column, time_axis};
+use super::over_time::{Curve, MOST_ROWS, beyond, column, time_axis};
 use super::palette::{BLUE, GUIDE, RUN, VERMILLION};
 use super::panel::{Axis, Mark, Panel, Sample};
 use super::runs::{Run, Runs};
@@ -47,7 +47,8 @@ pub(super) fn draw(runs: &Runs, figures: &mut Figures<'_>) -> Result<(), Error> 
 fn components(run: &Run, clearance: usize) -> Result<Vec<Mark>, Error> {
     let radial = run.radial_clearance(clearance)?.into_iter();
     let guides = radial.flat_map(|radial| [-radial, 0.0, radial]);
-    let mut marks: Vec<Mark> = guides.map(|height| Mark::Level(height, GUIDE)).collect();
+    let mut marks: Vec<Mark> = run.behind(run.state_ends()).map(Mark::Beyond).into_iter().collect();
+    marks.extend(guides.map(|height| Mark::Level(height, GUIDE)));
     for (dataset, stroke) in [("clearance_x", ALONG_X), ("clearance_y", ALONG_Y)] {
         let curve = Curve::of(run, run.samples(dataset)?.column(clearance));
         marks.push(Mark::Curve(curve.points, stroke));
@@ -60,11 +61,10 @@ fn eccentricity(run: &Run, clearance: usize) -> Result<Vec<Mark>, Error> {
     let Some(radial) = run.radial_clearance(clearance)? else { return Ok(Vec::new()) };
     let history = history(run, clearance)?;
     let points = history.iter().map(|moment| [run.place(moment.time), radial + moment.depth]);
-    Ok(vec![
-        Mark::Level(radial, GUIDE),
-        Mark::Level(0.0, GUIDE),
-        Mark::Curve(points.collect(), RUN),
-    ])
+    let curve = Mark::Curve(points.collect(), RUN);
+    let beyond = run.behind(run.state_ends()).map(Mark::Beyond);
+    let guides = [Mark::Level(radial, GUIDE), Mark::Level(0.0, GUIDE)];
+    Ok(beyond.into_iter().chain(guides).chain([curve]).collect())
 }
 
 /// Panels under each other whose vertical axes fit them all.
@@ -87,6 +87,9 @@ fn sheets(
         let mut panels: Vec<Panel> = panels.iter().map(panel).collect();
         if let Some(first) = panels.first_mut() {
             first.legend = legend.clone();
+            let mut marks = panels.iter().flat_map(|panel| &panel.marks);
+            let reaches = marks.any(|mark| matches!(mark, Mark::Beyond(_)));
+            panels[0].legend.extend(reaches.then(beyond));
         }
         column(panels)
     };

@@ -1,6 +1,6 @@
 //! Timeline of flight and contact, a row for each joint with clearance.
 
-use super::over_time::{MOST_ROWS, letter, time_axis};
+use super::over_time::{MOST_ROWS, beyond, letter, time_axis};
 use super::palette::BLUE;
 use super::panel::{Axis, Choice, Mark, Panel, Sample};
 use super::quantity::Unit;
@@ -30,6 +30,9 @@ fn page(panels: &[(usize, Panel)]) -> Sheet {
     letter(panels.iter_mut());
     if let Some(first) = panels.first_mut() {
         first.legend = vec![(Sample::Bar(BLUE), Text::roman("contact"))];
+        let mut marks = panels.iter().flat_map(|panel| &panel.marks);
+        let reaches = marks.any(|mark| matches!(mark, Mark::Beyond(_)));
+        panels[0].legend.extend(reaches.then(beyond));
     }
     let rows = panels.into_iter().map(|panel| vec![Some(panel)]).collect();
     Sheet { width: DOUBLE_COLUMN, rows, heights, shared_x: true }
@@ -50,7 +53,8 @@ fn panel(run: &Run, x: &Axis) -> (usize, Panel) {
             [a.min(b), a.max(b)]
         })
     };
-    let marks = (0..joints.len()).map(|joint| Mark::Bars(bars(joint).collect(), joint, BLUE));
+    let bars = (0..joints.len()).map(|joint| Mark::Bars(bars(joint).collect(), joint, BLUE));
+    let marks = run.behind(run.state_ends()).map(Mark::Beyond).into_iter().chain(bars);
     let y = Axis {
         title: Text::default(),
         unit: Unit::one(),

@@ -1,8 +1,9 @@
 //! Digits over time, where a file has them: those certified of the reference, those of the run that
-//! was held against it, and those that errors of double precision leave.
+//! was held against it or that its companion estimates, and those that errors of double precision
+//! leave.
 
 use super::over_time::{Curve, column, time_axis};
-use super::palette::{BLACK, BLUE, VERMILLION};
+use super::palette::{BLACK, BLUE, GREEN, VERMILLION};
 use super::panel::{Axis, Choice, Mark, Panel, Sample, range_of};
 use super::quantity::Unit;
 use super::runs::Runs;
@@ -11,9 +12,11 @@ use super::text::Text;
 use super::{Error, Figures};
 
 /// The curves: dataset, words, stroke.
-const CURVES: [(&str, &str, Stroke); 3] = [
+const CURVES: [(&str, &str, Stroke); 5] = [
     ("reference_digits", "reference", Stroke::solid(BLACK, 1.0)),
     ("run_digits", "run", Stroke::solid(BLUE, 0.7)),
+    ("estimated_digits", "run, estimated", Stroke::solid(BLUE, 1.0)),
+    ("estimated_digits_forces", "its forces, estimated", Stroke::solid(GREEN, 0.6)),
     ("digits_left", "left to double precision", Stroke::dashed(VERMILLION, 0.9)),
 ];
 

@@ -1,6 +1,6 @@
 //! Energy balance of each run: its parts, and what the balance is off by.
 
-use super::over_time::{Curve, column, time_axis};
+use super::over_time::{Curve, beyond, column, time_axis};
 use super::palette::{BLACK, BLUE, GREEN, ORANGE, PURPLE, RUN, VERMILLION};
 use super::panel::{Axis, Mark, Panel, Sample, range_of, zero_line};
 use super::runs::{Run, Runs};
@@ -47,6 +47,10 @@ fn parts(run: &Run, x: &Axis) -> Result<Panel, Error> {
     }
     let y = Axis::fitting(Text::roman("Energy, ").and_italic("E"), "J", ends);
     marks.splice(0..0, zero_line(y.range));
+    if let Some(places) = run.behind(run.state_ends()) {
+        marks.insert(0, Mark::Beyond(places));
+        legend.push(beyond());
+    }
     Ok(Panel { label: Text::roman(&run.name), legend, x: x.clone(), y, marks })
 }
 

@@ -36,7 +36,8 @@ pub(super) fn draw(runs: &Runs, figures: &mut Figures<'_>) -> Result<(), Error> 
 fn force(run: &Run, joint: &str) -> Result<Option<Curve>, Error> {
     if let Some(clearance) = clearance(run, joint) {
         let points = normal_force(run, clearance)?;
-        return Ok(Some(Curve { run: run.name.clone(), points }));
+        let beyond = run.behind(run.forces_end());
+        return Ok(Some(Curve { run: run.name.clone(), points, beyond }));
     }
     let Some(index) = run.index(Dimension::Joint, joint) else { return Ok(None) };
     let x = run.samples("joint_force_x")?.column(index);

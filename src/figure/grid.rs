@@ -37,6 +37,19 @@ pub(super) fn by_run_and_joint(
     Ok(pages)
 }
 
+/// Leaves the entries of legends on the first panel of each sheet that has some.
+pub(super) fn tell_once(sheets: &mut [Sheet]) {
+    for sheet in sheets {
+        let mut told = false;
+        for panel in sheet.rows.iter_mut().flatten().flatten() {
+            match told {
+                true => panel.legend.clear(),
+                false => told = !panel.legend.is_empty(),
+            }
+        }
+    }
+}
+
 fn page(mut rows: Vec<Vec<Option<Panel>>>, height: f64) -> Sheet {
     let panels: Vec<&mut Panel> = rows.iter_mut().flatten().flatten().collect();
     letter(panels.into_iter());

@@ -1,8 +1,9 @@
 //! Path of the journal's centre in the circle of the clearance.
 
 use super::decimate::Point;
-use super::grid::by_run_and_joint;
-use super::palette::{BLACK, BLUE};
+use super::grid::{by_run_and_joint, tell_once};
+use super::over_time::beyond_path;
+use super::palette::{BEYOND_PATH, BLACK, BLUE};
 use super::panel::{Axis, Choice, Mark, Panel};
 use super::quantity::Unit;
 use super::runs::{Run, Runs};
@@ -13,27 +14,39 @@ use super::{Error, Figures};
 
 /// Draws one figure with a panel for each joint of each run.
 pub(super) fn draw(runs: &Runs, figures: &mut Figures<'_>) -> Result<(), Error> {
-    let sheets = by_run_and_joint(runs, 1.0, |run, joint, index| {
-        let path = path(run, index)?;
-        let marks = vec![Mark::Path(path.clone(), Stroke::solid(BLUE, 0.4))];
-        in_the_circle(run, joint, index, &path, marks).map(Some)
+    let mut sheets = by_run_and_joint(runs, 1.0, |run, joint, index| {
+        let (path, known) = path(run, index)?;
+        let mut marks = Vec::new();
+        if known < path.len() {
+            // the line between them belongs to what is beyond
+            let beyond = path[known.saturating_sub(1)..].to_vec();
+            marks.push(Mark::Path(beyond, Stroke::solid(BEYOND_PATH, 0.4)));
+        }
+        marks.push(Mark::Path(path[..known].to_vec(), Stroke::solid(BLUE, 0.4)));
+        let mut panel = in_the_circle(run, joint, index, &path, marks)?;
+        panel.legend.extend((known < path.len()).then(beyond_path));
+        Ok(Some(panel))
     })?;
+    tell_once(&mut sheets);
     figures.add("journal-path", None, "Path of the journal's centre in its clearance", sheets);
     Ok(())
 }
 
 /// Centre of the journal relative to that of the bearing (m) at all samples, and as often between
 /// them as a smooth curve needs: its distance is that of the clearance's history, its direction
-/// that of a cubic through the samples.
-fn path(run: &Run, clearance: usize) -> Result<Vec<Point>, Error> {
+/// that of a cubic through the samples. Beside it the number of points before the horizon.
+fn path(run: &Run, clearance: usize) -> Result<(Vec<Point>, usize), Error> {
     let x = run.samples("clearance_x")?.column(clearance);
     let y = run.samples("clearance_y")?.column(clearance);
+    let ends = run.state_ends().unwrap_or(f64::INFINITY);
     let Some(radial) = run.radial_clearance(clearance)? else {
-        return Ok(x.into_iter().zip(y).map(|(x, y)| [x, y]).collect());
+        let known = run.times.partition_point(|time| *time <= ends);
+        return Ok((x.into_iter().zip(y).map(|(x, y)| [x, y]).collect(), known));
     };
-    let mut points = Vec::new();
+    let (mut points, mut known) = (Vec::new(), 0);
     let mut sample = 0;
     for moment in history(run, clearance)? {
+        known += usize::from(moment.time <= ends);
         while run.times.get(sample + 1).is_some_and(|next| *next <= moment.time) {
             sample += 1;
         }
@@ -45,7 +58,7 @@ fn path(run: &Run, clearance: usize) -> Result<Vec<Point>, Error> {
         let scale = (radial + moment.depth) / x.hypot(y);
         points.push([scale * x, scale * y]);
     }
-    Ok(points)
+    Ok((points, known))
 }
 
 /// Value between sample `k` and the next of a cubic with the slopes of parabolas through three

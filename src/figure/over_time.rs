@@ -2,7 +2,7 @@
 
 use super::Over;
 use super::decimate::Point;
-use super::palette::{IDEAL, OVERLAID, RUN};
+use super::palette::{BEYOND, BEYOND_PATH, IDEAL, OVERLAID, RUN};
 use super::panel::{Axis, Choice, Mark, Panel, Sample, zero_line};
 use super::quantity::Unit;
 use super::runs::{Run, Runs};
@@ -21,13 +21,15 @@ pub(super) struct Curve {
     pub run: String,
     /// Its points.
     pub points: Vec<Point>,
+    /// Where on the horizontal axis a force of the run means nothing any more.
+    pub beyond: Option<[f64; 2]>,
 }
 
 impl Curve {
     /// Values at the samples of a run.
     pub fn of(run: &Run, values: Vec<f64>) -> Self {
         let points = run.abscissa().iter().copied().zip(values).map(|(x, y)| [x, y]).collect();
-        Curve { run: run.name.clone(), points }
+        Curve { run: run.name.clone(), points, beyond: run.behind(run.forces_end()) }
     }
 
     /// Values at the samples of a run, and the extremes that it found between them of a measure of
@@ -43,7 +45,7 @@ impl Curve {
         }
         points.sort_by(|a, b| a[0].total_cmp(&b[0]));
         let points = points.into_iter().map(|[time, value]| [run.place(time), value]).collect();
-        Curve { run: run.name.clone(), points }
+        Curve { run: run.name.clone(), points, beyond: run.behind(run.forces_end()) }
     }
 }
 
@@ -79,7 +81,8 @@ pub(super) fn stack(
     let everything = curves.iter().chain(ideal).flat_map(|curve| &curve.points);
     let y = Axis::fitting(title.clone(), unit, everything.map(|point| point[1]));
     let panel = |curve: &Curve| {
-        let mut marks: Vec<Mark> = zero_line(y.range).into_iter().collect();
+        let mut marks: Vec<Mark> = curve.beyond.map(Mark::Beyond).into_iter().collect();
+        marks.extend(zero_line(y.range));
         marks.push(Mark::Curve(curve.points.clone(), RUN));
         marks.extend(ideal.map(|ideal| Mark::Curve(ideal.points.clone(), IDEAL)));
         Panel {
@@ -99,26 +102,42 @@ pub(super) fn stack(
         let mut panels: Vec<Panel> = curves.iter().map(panel).collect();
         if let Some(first) = panels.first_mut() {
             first.legend = legend.clone().into_iter().collect();
+            first.legend.extend(curves.iter().find_map(|curve| curve.beyond).map(|_| beyond()));
         }
         column(panels)
     };
     curves.chunks(MOST_ROWS).map(page).collect()
 }
 
-/// A panel with the curves of several runs; the first lies on top.
+/// A panel with the curves of several runs; the first lies on top. Grey is what lies beyond the
+/// horizon of any of them.
 fn overlaid(x: &Axis, y: &Axis, part: &str, curves: &[Curve], ideal: Option<&Curve>) -> Panel {
     let of_runs: Vec<(&Curve, Stroke)> = curves.iter().zip(OVERLAID).collect();
     let all = || of_runs.iter().copied().chain(ideal.map(|ideal| (ideal, IDEAL)));
-    let mut marks: Vec<Mark> = zero_line(y.range).into_iter().collect();
+    let mut marks: Vec<Mark> =
+        curves.iter().filter_map(|curve| curve.beyond).map(Mark::Beyond).collect();
+    let grey = (!marks.is_empty()).then(beyond);
+    marks.extend(zero_line(y.range));
     let drawn = of_runs.iter().rev().copied().chain(ideal.map(|ideal| (ideal, IDEAL)));
     marks.extend(drawn.map(|(curve, stroke)| Mark::Curve(curve.points.clone(), stroke)));
+    let lines = all().map(|(c, stroke)| (Sample::Line(stroke), Text::roman(&c.run)));
     Panel {
         label: Text::roman(part),
-        legend: all().map(|(c, stroke)| (Sample::Line(stroke), Text::roman(&c.run))).collect(),
+        legend: lines.chain(grey).collect(),
         x: x.clone(),
         y: y.clone(),
         marks,
     }
+}
+
+/// The entry of a legend for what lies beyond the horizon of a run.
+pub(super) fn beyond() -> (Sample, Text) {
+    (Sample::Bar(BEYOND), Text::roman("beyond the horizon"))
+}
+
+/// The same for paths and points.
+pub(super) fn beyond_path() -> (Sample, Text) {
+    (Sample::Line(Stroke::solid(BEYOND_PATH, 0.9)), Text::roman("beyond the horizon"))
 }
 
 /// Panels under each other over one horizontal axis.

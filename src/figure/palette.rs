@@ -22,6 +22,11 @@ pub(super) const SKY: &str = "#56b4e9";
 /// Grey of lines that only guide the eye.
 pub(super) const GREY: &str = "#999";
 
+/// Ground behind what lies beyond the horizon of a run.
+pub(super) const BEYOND: &str = "#e6e6e6";
+/// Paths and points there.
+pub(super) const BEYOND_PATH: &str = "#bdbdbd";
+
 /// Frames and ticks.
 pub(super) const FRAME: Stroke = Stroke::solid(BLACK, 0.5);
 /// Lines that only guide the eye.

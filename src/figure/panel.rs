@@ -2,7 +2,7 @@
 
 use super::decimate::{Point, by_columns, by_distance};
 use super::ink::without_covered;
-use super::palette::FRAME;
+use super::palette::{BEYOND, FRAME};
 use super::quantity::Unit;
 use super::svg::{Anchor, Stroke, Svg};
 use super::text::Text;
@@ -94,6 +94,8 @@ pub(super) enum Mark {
     Level(f64, Stroke),
     /// A line at a place on the horizontal axis.
     Upright(f64, Stroke),
+    /// The ground between two places on the horizontal axis: a run's numbers there mean nothing.
+    Beyond([f64; 2]),
 }
 
 impl Mark {
@@ -317,6 +319,10 @@ impl Panel {
             Mark::Upright(place, stroke) => {
                 let x = self.across(frame, *place);
                 svg.lines([[[x, top], [x, bottom]]], stroke);
+            }
+            Mark::Beyond(places) => {
+                let [from, to] = places.map(|place| self.across(frame, place).clamp(left, right));
+                svg.rectangles([[[from.min(to), top], [from.max(to), bottom]]], BEYOND);
             }
         }
     }

@@ -1,9 +1,9 @@
 //! Poincaré section: where the journals' centres are whenever a drive passes an angle.
 
 use super::decimate::Point;
-use super::grid::by_run_and_joint;
+use super::grid::{by_run_and_joint, tell_once};
 use super::journal_path::in_the_circle;
-use super::palette::BLUE;
+use super::palette::{BEYOND_PATH, BLUE};
 use super::panel::{Dot, Mark, Sample};
 use super::runs::{DriveAngle, Run, Runs, interpolate};
 use super::text::Text;
@@ -17,6 +17,9 @@ const DOT: Dot = Dot { radius: 1.4, colour: BLUE };
 /// Passages that may show a pattern; fewer are a few dots.
 const PATTERN: usize = 30;
 
+/// A passage beyond the horizon of the run.
+const BEYOND_DOT: Dot = Dot { radius: 1.4, colour: BEYOND_PATH };
+
 /// Draws one figure with a panel for each joint of each run that has a drive.
 pub(super) fn draw(runs: &Runs, figures: &mut Figures<'_>) -> Result<(), Error> {
     let section = figures.options.section;
@@ -28,13 +31,20 @@ pub(super) fn draw(runs: &Runs, figures: &mut Figures<'_>) -> Result<(), Error> 
             return Ok(None);
         }
         let points = at(run, index, &times)?;
-        let marks = vec![Mark::Dots(points.clone(), DOT)];
-        in_the_circle(run, joint, index, &points, marks).map(Some)
+        let ends = run.state_ends().unwrap_or(f64::INFINITY);
+        let (known, beyond) = points.split_at(times.partition_point(|time| *time <= ends));
+        let marks = vec![Mark::Dots(beyond.to_vec(), BEYOND_DOT), Mark::Dots(known.to_vec(), DOT)];
+        let mut panel = in_the_circle(run, joint, index, &points, marks)?;
+        if !beyond.is_empty() {
+            panel.legend = vec![(Sample::Dot(BEYOND_DOT), Text::roman("beyond the horizon"))];
+        }
+        Ok(Some(panel))
     })?;
+    tell_once(&mut sheets);
     for sheet in &mut sheets {
         if let Some(first) = sheet.rows.iter_mut().flatten().flatten().next() {
             let words = Text::italic("φ").and(format!(" = {angle}°"));
-            first.legend = vec![(Sample::Dot(DOT), words)];
+            first.legend.insert(0, (Sample::Dot(DOT), words));
         }
         for panel in sheet.rows.iter_mut().flatten().flatten() {
             panel.label = std::mem::take(&mut panel.label).and_text(&too_few(&panel.marks));

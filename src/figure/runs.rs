@@ -2,6 +2,7 @@
 
 use super::{Error, Options, Over};
 use crate::case::{Case, Changes};
+use crate::certify::Horizon;
 use crate::model::did_you_mean;
 use crate::record::{Dimension, ResultFile, Table};
 use crate::run::{Contact, Event, Peak, Revolution};
@@ -29,6 +30,8 @@ pub(super) struct Run {
     pub peaks: Vec<Peak>,
     /// Extremes by revolution.
     pub revolutions: Vec<Revolution>,
+    /// How far the run is true; `None` where the file does not tell.
+    horizon: Option<Horizon>,
     window: Range<usize>,
     over: Over,
     /// Datasets read last: figures of several parts read the same ones again.
@@ -72,6 +75,7 @@ impl Run {
             contacts: file.contacts()?,
             peaks: file.peaks()?,
             revolutions: file.revolutions()?,
+            horizon: Horizon::of(&file)?,
             window,
             over: options.over,
             read: RefCell::default(),
@@ -128,6 +132,27 @@ impl Run {
             Over::Time => time,
             Over::Angle => interpolate(&self.times, self.abscissa(), time),
         }
+    }
+
+    /// Time (s) behind which the state means nothing, where that is drawn.
+    pub fn state_ends(&self) -> Option<f64> {
+        self.ends(|horizon| horizon.state)
+    }
+
+    /// The same of forces, torques and accelerations.
+    pub fn forces_end(&self) -> Option<f64> {
+        self.ends(|horizon| horizon.forces)
+    }
+
+    fn ends(&self, of: fn(&Horizon) -> f64) -> Option<f64> {
+        let last = self.times.last()?;
+        self.horizon.as_ref().map(of).filter(|until| until < last)
+    }
+
+    /// Where on the horizontal axis what is drawn lies behind a time (s).
+    pub fn behind(&self, until: Option<f64>) -> Option<[f64; 2]> {
+        let (first, last) = self.times.first().zip(self.times.last())?;
+        until.map(|until| [self.place(until.max(*first)), self.place(*last)])
     }
 
     /// Whether a time lies in what is drawn.

@@ -24,6 +24,7 @@ fn simulated(case: &str, changes: &[&str], ideal: bool) -> ResultFile {
         rulings: Vec::new(),
         finished_utc: String::new(),
         series: Vec::new(),
+        attributes: Vec::new(),
     };
     // The file stays readable while it is open, though its folder goes.
     ResultFile::open(&writer.finish(ending).unwrap()).unwrap()

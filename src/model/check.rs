@@ -165,6 +165,10 @@ fn check_clearance(complaints: &mut Complaints, key: &KeyPath, clearance: &Clear
     }
     let rate = &clearance.minimum_impact_rate;
     complaints.require_positive(key.key("minimum_impact_rate"), rate, "m/s");
+    let share = &clearance.maximum_penetration;
+    let range = "a share of the journal's radius, greater than 0 and at most 1";
+    let holds = |share: f64| share > 0.0 && share <= 1.0;
+    complaints.require(key.key("maximum_penetration"), share, "", range, holds);
     check_normal(complaints, &key.key("normal"), &clearance.normal);
     if let Some(friction) = &clearance.friction {
         check_friction(complaints, &key.key("friction"), friction);

@@ -79,6 +79,8 @@ pub struct ClearanceDescription {
     pub tension: Tension,
     /// Smallest impact rate that the damping is scaled by (m/s).
     pub minimum_impact_rate: Decimal,
+    /// Largest penetration that the law is believed for, as a share of the journal's radius.
+    pub maximum_penetration: Decimal,
     /// Law of the tangential force; `None` without friction.
     pub friction: Option<FrictionDescription>,
 }

@@ -232,6 +232,7 @@ fn read_clearance<S: Scalar>(pair: Pair<S>, clearance: &ClearanceDescription) ->
         friction: clearance.friction.as_ref().and_then(friction_law),
         cut_tension: clearance.tension == Tension::Cut,
         minimum_impact_rate: clearance.minimum_impact_rate.value(),
+        maximum_penetration: clearance.maximum_penetration.to_f64(),
     }
 }
 

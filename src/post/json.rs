@@ -1,6 +1,7 @@
 //! A summary as JSON: every number with its unit, columns by the names of result files.
 
 use super::{At, Contacts, Extreme, Extremes, Quantity, Reference, Stretch, Summary};
+use crate::certify::LEAST_DIGITS;
 use serde_json::{Map, Value, json};
 
 impl Summary {
@@ -30,6 +31,7 @@ impl Summary {
             "clearances": Map::from_iter(clearances),
             "contacts_with_fewer_than_three_samples": self.unresolved_contacts,
             "energy": self.energy_balance(),
+            "horizon": self.horizon_json(),
         })
     }
 
@@ -43,6 +45,31 @@ impl Summary {
             "count": parts.count(),
             "bounds": bounds,
             "last_is_whole": parts.is_whole(parts.count() - 1),
+        })
+    }
+
+    /// How far the run is true; what is not known is `null`.
+    fn horizon_json(&self) -> Value {
+        self.horizon.as_ref().map_or(Value::Null, |horizon| {
+            let revolutions = self.turning.as_ref().map(|turning| {
+                let all = 0..turning.revolutions.count();
+                all.map(|k| !self.reaches_beyond(k)).collect::<Vec<_>>()
+            });
+            json!({
+                "unit": "s",
+                "least_digits": LEAST_DIGITS,
+                "state": horizon.state,
+                "forces": horizon.forces,
+                "doubles": horizon.doubles,
+                "end": horizon.end,
+                "certified": horizon.certified,
+                "stopped": horizon.stopped,
+                "digits_at_end": horizon.at_end.map(|digits| {
+                    json!({ "state": digits.state, "forces": digits.forces })
+                }),
+                "revolutions_within": revolutions,
+                "sentence": self.sentence,
+            })
         })
     }
 
@@ -70,6 +97,12 @@ impl Summary {
     /// Extremes of a span with their ratios to the reference.
     fn extremes(&self, quantity: Quantity, extremes: &Extremes) -> Map<String, Value> {
         let mut all = self.pair(quantity, extremes);
+        for (side, extreme) in [("largest", extremes.largest), ("smallest", extremes.smallest)] {
+            let told = all.get_mut(side).and_then(Value::as_object_mut);
+            if let (Some(told), Some(extreme), Some(_)) = (told, extreme, &self.horizon) {
+                told.insert("within_horizon".into(), (!self.is_beyond(extreme.time)).into());
+            }
+        }
         let [largest, smallest] = self.ratios(quantity, extremes);
         let mut ratios = json!({ "largest": largest });
         if quantity.is_signed() {

@@ -26,6 +26,16 @@ use crate::{record, simulate};
 use std::convert::Infallible;
 use std::path::PathBuf;
 
+/// Complaints in one line.
+fn what_is_wrong(error: &case::Error) -> String {
+    match error {
+        case::Error::NotAMechanism { complaints, .. } => {
+            complaints.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ")
+        }
+        other => other.to_string(),
+    }
+}
+
 /// Why a run could not be summarised.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
@@ -41,6 +51,15 @@ pub enum Error {
     /// The case in a file, with its clearances removed or not, describes no mechanism.
     #[error(transparent)]
     Case(case::Error),
+    /// The case, as it was run, is sound; without its clearances it does not go together.
+    #[error(
+        "without its clearances the mechanism cannot be assembled as it starts: {}",
+        what_is_wrong(why)
+    )]
+    NoIdeal {
+        /// What is wrong with the ideal mechanism.
+        why: Box<case::Error>,
+    },
     /// A run on the spot failed.
     #[error(transparent)]
     Simulation(simulate::Error<Infallible>),

@@ -6,9 +6,11 @@ use super::extremes::{RunExtremes, case_of, names_of};
 use super::tally::{Extremes, ratio};
 use super::{Error, Quantity, Revolutions};
 use crate::case::{Case, Changes};
+use crate::certify::Horizon;
 use crate::model::Model;
 use crate::record::ResultFile;
 use crate::run::Contact;
+use crate::simulate;
 use std::path::PathBuf;
 
 /// The drive whose revolutions a run is parted into: the first.
@@ -77,6 +79,10 @@ pub struct Summary {
     pub unresolved_contacts: usize,
     /// Energies; `None` without samples.
     pub energy: Option<EnergyBalance>,
+    /// How far the run is true; `None` where the file does not tell.
+    pub horizon: Option<Horizon>,
+    /// A sentence on that, to be quoted.
+    pub sentence: Option<String>,
 }
 
 impl Summary {
@@ -99,6 +105,7 @@ impl Summary {
         };
         let text = |name| file.text(name).unwrap_or_default().to_owned();
         let joints = file.clearances().iter().enumerate();
+        let horizon = Horizon::of(file)?;
         Ok(Summary {
             path: file.path().to_owned(),
             case_name: text("case_name"),
@@ -114,6 +121,24 @@ impl Summary {
             unresolved_contacts: contacts.iter().filter(|c| samples_in(c, &times) < 3).count(),
             turning,
             energy: EnergyBalance::of(file)?,
+            sentence: horizon.as_ref().map(|horizon| horizon.sentence(file)),
+            horizon,
+        })
+    }
+
+    /// Whether a force, torque or acceleration at a time (s) lies beyond the horizon of the run.
+    pub fn is_beyond(&self, time: f64) -> bool {
+        self.horizon.as_ref().is_some_and(|horizon| time > horizon.forces)
+    }
+
+    /// Whether some of a revolution, counted from 0, does.
+    pub fn reaches_beyond(&self, revolution: usize) -> bool {
+        let parts = self.turning.as_ref().map(|turning| turning.revolutions);
+        parts.is_some_and(|parts| {
+            let [_, end] = parts.bounds(revolution);
+            self.horizon.as_ref().is_some_and(|horizon| {
+                horizon.forces < horizon.end && end * (1.0 - 1e-9) > horizon.forces
+            })
         })
     }
 
@@ -163,9 +188,9 @@ fn turning(case: &Case, end: f64, samples: usize) -> Option<Turning> {
 
 /// The ideal mechanism of the case in a file, in doubles, which is all that a ratio needs.
 fn ideal(file: &ResultFile, end: f64) -> Result<RunExtremes, Error> {
-    let doubles = "solver.precision=16".parse().into_iter().collect();
-    let case = case_of(file, &Changes { set: doubles, ideal: true })?;
-    RunExtremes::of_ideal(&case, end)
+    let case = case_of(file, &Changes::default())?;
+    let ideal = simulate::ideal_case(&case).map_err(|why| Error::NoIdeal { why: Box::new(why) })?;
+    RunExtremes::of_ideal(&ideal, end)
 }
 
 fn held_against(

@@ -1,15 +1,22 @@
 //! A summary as tables for people.
 
 use super::{
-    Basis, Contacts, EnergyBalance, Extreme, Extremes, Quantity, Reference, Revolutions, Stretch,
-    Summary, Tally,
+    At, Basis, Contacts, EnergyBalance, Extreme, Extremes, Quantity, Reference, Revolutions,
+    Stretch, Summary, Tally,
 };
+use crate::certify::{ONE_DRAW, ms};
 use comfy_table::presets::NOTHING;
 use comfy_table::{CellAlignment, LineStyle, Table};
 use std::fmt;
 
 /// Revolutions that are shown at most: the first and the last half of these.
 const MOST_REVOLUTIONS: usize = 24;
+
+/// How a number is known that lies where the run has no digits left.
+const BEYOND: &str = "beyond the horizon";
+
+/// What marks such a number, and a revolution that has some.
+const MARK: &str = " *";
 
 /// What stands where there is no number.
 const NONE: &str = "–";
@@ -61,6 +68,15 @@ impl Summary {
                 writeln!(f, "ratios to {case_name} in {}", path.display())
             }
             Err(_) => writeln!(f, "no ratios: there is no ideal run"),
+        }?;
+        match &self.horizon {
+            Some(horizon) => writeln!(f, "{}", horizon.holds()),
+            None if self.contacts.is_empty() => Ok(()),
+            None => writeln!(
+                f,
+                "how far this run is true is not known: its errors were not followed; `freeplay \
+                 run` does that, `freeplay certify` knows for certain"
+            ),
         }
     }
 
@@ -152,7 +168,10 @@ impl Summary {
         if let Some(turning) = &self.turning {
             row.push(number(time.map(|time| turning.angle(time).to_degrees()), 6));
         }
-        row.push(known(extreme));
+        row.push(match time {
+            Some(time) if self.is_beyond(time) => BEYOND.to_owned(),
+            _ => known(extreme),
+        });
         if self.has_ratios() {
             row.extend([value(reference), number(ratio, 4)]);
         }
@@ -165,7 +184,7 @@ impl Summary {
         let joints = self.run.names.joints.iter().map(|joint| format!("force {joint}"));
         let contacts = self.contacts.iter().map(|contacts| format!("contacts {}", contacts.joint));
         let heads = joints.chain(contacts);
-        by_revolution(parts, heads.collect(), |k| {
+        self.by_revolution(parts, heads.collect(), |k| {
             let forces = forces.iter();
             let ratios =
                 forces.map(|(of, tally)| self.in_span(*of, &tally.revolutions[k])[0].clone());
@@ -185,7 +204,7 @@ impl Summary {
         signed.retain(|(quantity, _)| name(*quantity).is_some());
         let heads = signed.iter().filter_map(|(quantity, _)| name(*quantity));
         let heads = heads.flat_map(|name| [format!("{name} +"), "−".to_owned()]);
-        by_revolution(parts, heads.collect(), |k| {
+        self.by_revolution(parts, heads.collect(), |k| {
             signed.iter().flat_map(|(of, tally)| self.in_span(*of, &tally.revolutions[k])).collect()
         })
     }
@@ -218,13 +237,79 @@ impl Summary {
                 number(contacts.share.map(|share| share * 100.0), 4),
                 number(length(contacts.longest_contact), 5),
                 number(length(contacts.longest_flight), 5),
-                number(contacts.deepest.map(|deepest| deepest.value * 1e6), 5),
-                number(contacts.fastest.map(|fastest| fastest.value), 5),
+                self.marked(contacts.deepest, 1e6),
+                self.marked(contacts.fastest, 1.0),
                 figures(contacts.dissipated, 5),
                 permanent(contacts),
             ]
         });
         table(heads.map(str::to_owned).to_vec(), rows.collect(), 1)
+    }
+
+    /// A table with a line a revolution; those that reach beyond the horizon are marked.
+    fn by_revolution(
+        &self,
+        parts: Revolutions,
+        heads: Vec<String>,
+        line: impl Fn(usize) -> Vec<String>,
+    ) -> Table {
+        let rows = listed(parts.count()).into_iter().map(|k| match k {
+            None => vec!["…".to_owned(); heads.len() + 1],
+            Some(k) => {
+                let cut = if parts.is_whole(k) { "" } else { " (part)" };
+                let mark = if self.reaches_beyond(k) { MARK } else { "" };
+                let mut row = vec![format!("{}{cut}{mark}", k + 1)];
+                row.extend(line(k));
+                row
+            }
+        });
+        let rows = rows.collect();
+        let mut all = vec!["revolution".to_owned()];
+        all.extend(heads);
+        table(all, rows, 0)
+    }
+
+    /// What is said of peaks that the run found.
+    fn peak_words(&self) -> &'static str {
+        match &self.horizon {
+            Some(horizon) if horizon.is_whole() => {
+                "peak: found by the run between its samples, as accurate as its forces"
+            }
+            Some(_) => {
+                "peak: found by the run between its samples, as accurate as its forces before the \
+                 horizon"
+            }
+            None => {
+                "peak: found by the run between its samples; how far the run is true is not known"
+            }
+        }
+    }
+
+    /// What the marks mean.
+    fn horizon_notes(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Some(horizon) = self.horizon.as_ref().filter(|horizon| !horizon.is_whole()) else {
+            return Ok(());
+        };
+        let until = ms(horizon.forces);
+        match &horizon.stopped {
+            None => writeln!(
+                f,
+                "{BEYOND}, *: behind {until} no digit of a force is left; such a number is \
+                 {ONE_DRAW}, and another tolerance or machine gives another. Counts and sums hold \
+                 all of the run."
+            ),
+            Some(why) => writeln!(
+                f,
+                "{BEYOND}, *: the run's errors were followed until {until} only ({why}); how far \
+                 such a number is true is not known"
+            ),
+        }
+    }
+
+    /// A value in another unit, marked where its time lies beyond the horizon.
+    fn marked(&self, at: Option<At>, factor: f64) -> String {
+        let mark = if at.is_some_and(|at| self.is_beyond(at.time)) { MARK } else { "" };
+        number(at.map(|at| at.value * factor), 5) + mark
     }
 
     fn notes(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -235,16 +320,14 @@ impl Summary {
         writeln!(f)?;
         for (basis, words) in [
             (Basis::Evaluated, "exact: the mechanism was evaluated there, true to rounding"),
-            (
-                Basis::Peak,
-                "peak: found while the run went on, whatever its samples; as accurate as the run",
-            ),
+            (Basis::Peak, self.peak_words()),
             (Basis::Sample, "sample: of the samples; between them it may be exceeded"),
         ] {
             if bases.contains(&basis) {
                 writeln!(f, "{words}")?;
             }
         }
+        self.horizon_notes(f)?;
         if self.unresolved_contacts > 0 && bases.contains(&Basis::Sample) {
             let count = self.unresolved_contacts;
             writeln!(
@@ -265,27 +348,6 @@ fn listed(count: usize) -> Vec<Option<usize>> {
     let half = MOST_REVOLUTIONS / 2;
     let first = (0..half).map(Some);
     first.chain([None]).chain((count - half..count).map(Some)).collect()
-}
-
-/// A table with a line a revolution.
-fn by_revolution(
-    parts: Revolutions,
-    heads: Vec<String>,
-    line: impl Fn(usize) -> Vec<String>,
-) -> Table {
-    let rows = listed(parts.count()).into_iter().map(|k| match k {
-        None => vec!["…".to_owned(); heads.len() + 1],
-        Some(k) => {
-            let cut = if parts.is_whole(k) { "" } else { " (part)" };
-            let mut row = vec![format!("{}{cut}", k + 1)];
-            row.extend(line(k));
-            row
-        }
-    });
-    let rows = rows.collect();
-    let mut all = vec!["revolution".to_owned()];
-    all.extend(heads);
-    table(all, rows, 0)
 }
 
 fn energy_table(energy: &EnergyBalance) -> Table {

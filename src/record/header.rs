@@ -44,6 +44,8 @@ pub struct Ending {
     pub finished_utc: String,
     /// Datasets that are known only now.
     pub series: Vec<Series>,
+    /// Attributes of the root that are known only now, with their names.
+    pub attributes: Vec<(String, Attribute)>,
 }
 
 /// A dataset along a dimension that grows, known as a whole at the run's end: what a certificate

@@ -1,6 +1,7 @@
 //! What a result file holds and how it was made, in words.
 
 use super::{Attribute, Dimension, Error, ResultFile};
+use serde_json::{Map, Value, json};
 use std::fmt;
 use std::path::PathBuf;
 
@@ -41,6 +42,38 @@ impl Overview {
             span: times.first().zip(times.last()).map(|(first, last)| [*first, *last]),
             dimensions: dimensions.collect(),
             attributes: rest.cloned().collect(),
+        })
+    }
+}
+
+impl Overview {
+    /// The same for programs; times in s.
+    pub fn to_json(&self) -> Value {
+        let dimensions = self.dimensions.iter().map(|(dimension, length, names)| {
+            let told = match names.is_empty() {
+                true => json!({ "length": length }),
+                false => json!({ "length": length, "names": names }),
+            };
+            (dimension.name().to_owned(), told)
+        });
+        let attributes = self.attributes.iter().map(|(name, attribute)| {
+            let value = match attribute {
+                Attribute::Text(text) => json!(text),
+                // infinite is no number of JSON's, and null would hide it
+                Attribute::Number(value) if !value.is_finite() => json!(value.to_string()),
+                Attribute::Number(value) => json!(value),
+                Attribute::Integer(value) => json!(value),
+            };
+            (name.clone(), value)
+        });
+        json!({
+            "file": self.path.to_string_lossy(),
+            "case_name": self.case_name,
+            "title": self.title,
+            "run_status": self.status,
+            "span": self.span,
+            "dimensions": Map::from_iter(dimensions),
+            "attributes": Map::from_iter(attributes),
         })
     }
 }

@@ -152,10 +152,30 @@ fn folder_of(path: &Path) -> &Path {
     }
 }
 
+/// Bytes that a file's name may have on most file systems.
+const LONGEST_NAME: usize = 255;
+/// Bytes that are left free for what is put before and behind a name.
+const ROOM: usize = 40;
+
+/// As much of the begin of a name as leaves room for more.
+fn shortened(name: &OsStr) -> OsString {
+    if name.len() + ROOM <= LONGEST_NAME {
+        return name.to_owned();
+    }
+    let mut kept = String::new();
+    for c in name.to_string_lossy().chars() {
+        if kept.len() + c.len_utf8() + ROOM > LONGEST_NAME {
+            break;
+        }
+        kept.push(c);
+    }
+    kept.into()
+}
+
 /// `.NAME.partial-PROCESS`, with a number behind it if that is taken.
 fn temporary_name(name: &OsStr, number: u32) -> OsString {
     let mut temporary = OsString::from(".");
-    temporary.push(name);
+    temporary.push(shortened(name));
     temporary.push(format!(".partial-{}", std::process::id()));
     if number > 0 {
         temporary.push(format!("-{number}"));
@@ -171,7 +191,7 @@ fn beside(path: &Path, word: &str) -> PathBuf {
     let ending = path.extension().and_then(OsStr::to_str);
     let ending = ending.filter(|ending| ENDINGS.contains(ending));
     let stem = if ending.is_some() { path.file_stem() } else { path.file_name() };
-    let mut name = stem.map(OsStr::to_owned).unwrap_or_default();
+    let mut name = stem.map(shortened).unwrap_or_default();
     name.push(format!(".{word}.{}", ending.unwrap_or("h5")));
     path.with_file_name(name)
 }
@@ -268,6 +288,22 @@ mod tests {
         draft.publish().unwrap();
         assert_eq!(text_of(&file), "new");
         assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
+    }
+
+    #[test]
+    fn a_name_may_be_as_long_as_the_file_system_lets_it() {
+        let folder = tempfile::tempdir().unwrap();
+        for length in [240, 252] {
+            let path = folder.path().join(format!("{}.h5", "ä".repeat(length / 2)));
+            for (force, text) in [(false, "one"), (true, "two")] {
+                let draft = Draft::create(&path, force).unwrap();
+                fs::write(draft.temporary(), text).unwrap();
+                draft.publish().unwrap();
+                assert_eq!(text_of(&path), text);
+            }
+            let failed = Draft::create(&path, true).unwrap().publish_failed().unwrap();
+            assert!(failed.to_str().unwrap().ends_with(".failed.h5"), "{failed:?}");
+        }
     }
 
     #[test]

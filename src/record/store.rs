@@ -374,6 +374,9 @@ fn write_ending(file: &File, ending: &Ending) -> hdf5::Result<()> {
         let name = format!("solver_{}", count.name);
         Attribute::from(count.value as i64).write(file, &name)?;
     }
+    for (name, value) in &ending.attributes {
+        value.write(file, name)?;
+    }
     Attribute::from(&*ending.finished_utc).write(file, "finished_utc")?;
     file.delete_attr("run_status")?;
     match &ending.outcome {

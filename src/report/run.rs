@@ -5,6 +5,7 @@ use super::drawing::{self, Drawing};
 use super::pack::{Packed, TIME_DIGITS, VALUE_DIGITS, pack};
 use super::thin::rows_to_keep;
 use crate::case::Case;
+use crate::certify::Horizon;
 use crate::record::{self, ResultFile, Table, column_name};
 use crate::run::Contact;
 use serde::Serialize;
@@ -80,6 +81,9 @@ pub(super) struct PageRun<'a> {
     drives: &'a [String],
     /// Duration of a turn of the first drive (s).
     period: Option<f64>,
+    /// Behind which times (s) the state, and forces, torques and accelerations, mean nothing;
+    /// nothing where the whole run does, or nobody knows.
+    horizon: Option<[f64; 2]>,
     drawing: Option<Drawing>,
     /// Columns by their names in result files.
     columns: BTreeMap<String, Packed>,
@@ -148,9 +152,15 @@ impl<'a> Run<'a> {
             clearances: file.clearances(),
             drives: file.drives(),
             period: self.case.as_ref().and_then(drawing::period),
+            horizon: self.horizon()?,
             drawing: self.case.as_ref().and_then(|case| Drawing::of(case, file)),
             columns: self.pack_columns(&kept)?,
         })
+    }
+
+    fn horizon(&self) -> Result<Option<[f64; 2]>, record::Error> {
+        let ends = Horizon::of(self.file)?.filter(|horizon| !horizon.is_whole());
+        Ok(ends.map(|horizon| [horizon.state, horizon.forces]))
     }
 
     fn pack_columns(&self, kept: &[usize]) -> Result<BTreeMap<String, Packed>, Error> {

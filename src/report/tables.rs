@@ -3,6 +3,7 @@
 use super::html::escape;
 use super::number::{milliseconds, significant};
 use super::run::Run;
+use crate::certify::ONE_DRAW;
 use crate::post::{
     Basis, Contacts, EnergyBalance, Extreme, Extremes, Quantity, Reference, Stretch, Summary, Tally,
 };
@@ -66,7 +67,7 @@ pub(super) fn summary(runs: &[Summarised<'_>]) -> String {
         Some(format!("<p class=\"note\">{label} has no ratios to an ideal run: {why}.</p>"))
     });
     let notes: String = without_ideal.collect();
-    table.finish("summary") + &notes
+    table.finish("summary") + &horizon_notes(runs) + &notes
 }
 
 /// The largest and the smallest value of each item that is not zero throughout.
@@ -137,7 +138,10 @@ fn revolution_rows(table: &mut Matrix, runs: &[Summarised<'_>], joint: &str) {
     let joint = escape(joint);
     table.group(&format!("Largest force in {joint} over the ideal mechanism's{first}"));
     for k in 0..count.min(MOST_REVOLUTIONS) {
-        let cell = |run| extremes(run, k).map_or_else(dash, |ratio| significant(ratio, 3));
+        let cell = |run: &Summarised<'_>| {
+            let told = extremes(run, k).map_or_else(dash, |ratio| significant(ratio, 3));
+            if run.summary.reaches_beyond(k) { beyond(&told) } else { told }
+        };
         table.row(&format!("revolution {}", k + 1), runs.iter().map(cell));
     }
 }
@@ -178,7 +182,30 @@ fn extreme_cell(run: &Summarised<'_>, items: Items, item: &str, side: usize) -> 
         let ratio = significant(ratio, 3);
         format!(" <span class=\"ratio\" title=\"over the ideal one\">{ratio}\u{202f}×</span>")
     });
-    format!("{}{ratio}{}", told(&extreme, side), at(run, &extreme))
+    let told = format!("{}{ratio}{}", told(&extreme, side), at(run, &extreme));
+    if run.summary.is_beyond(extreme.time) { beyond(&told) } else { told }
+}
+
+/// A cell that lies beyond the horizon of its run; HTML.
+fn beyond(cell: &str) -> String {
+    format!("<span class=\"beyond\" title=\"beyond the horizon: {ONE_DRAW}\">{cell} *</span>")
+}
+
+/// How far each run is true.
+fn horizon_notes(runs: &[Summarised<'_>]) -> String {
+    let told = runs.iter().filter_map(|Summarised { run, summary }| {
+        let label = escape(&run.label);
+        let words = match (&summary.horizon, &summary.sentence) {
+            (Some(horizon), Some(sentence)) => {
+                let mark = if horizon.is_whole() { "" } else { " (*, grey in the charts)" };
+                format!("{}{mark}. To quote: <q>{}</q>", escape(&horizon.holds()), escape(sentence))
+            }
+            _ if summary.contacts.is_empty() => return None,
+            _ => "how far it is true is not known: its errors were not followed".to_owned(),
+        };
+        Some(format!("<p class=\"note horizon\">{label}: {words}.</p>"))
+    });
+    told.collect()
 }
 
 /// The largest (0) or smallest (1) value, and whether no more is known than that a sample has it.
@@ -213,14 +240,14 @@ fn percent_encoded(text: &str) -> String {
 /// The contacts of each run.
 pub(super) fn contacts(runs: &[Summarised<'_>]) -> String {
     let with = runs.iter().filter(|run| !run.run.file.clearances().is_empty());
-    let tables: String = with.map(|run| contacts_of(run.run)).collect();
+    let tables: String = with.map(contacts_of).collect();
     if tables.is_empty() {
         return "<p>No joint has a clearance.</p>".to_owned();
     }
     tables
 }
 
-fn contacts_of(run: &Run<'_>) -> String {
+fn contacts_of(Summarised { run, summary }: &Summarised<'_>) -> String {
     let mut shown: Vec<&Contact> = run.contacts.iter().collect();
     if shown.len() > MOST_CONTACTS {
         shown.sort_by(|one, other| other.peak_force.total_cmp(&one.peak_force));
@@ -233,7 +260,9 @@ fn contacts_of(run: &Run<'_>) -> String {
         false if count == 1 => "1 contact".to_owned(),
         false => format!("{count} contacts"),
     };
-    let rows: String = shown.iter().map(|contact| contact_row(run, contact)).collect();
+    let horizon = summary.horizon.as_ref();
+    let ends = horizon.map_or(f64::INFINITY, |horizon| horizon.forces);
+    let rows: String = shown.iter().map(|contact| contact_row(run, contact, ends)).collect();
     format!(
         "<details class=\"contacts\"><summary>{label}: {which}</summary>\
          <div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Contacts of {label}\">\
@@ -246,7 +275,8 @@ fn contacts_of(run: &Run<'_>) -> String {
     )
 }
 
-fn contact_row(run: &Run<'_>, contact: &Contact) -> String {
+/// A contact; grey where it peaks behind `ends` (s).
+fn contact_row(run: &Run<'_>, contact: &Contact, ends: f64) -> String {
     let lasts = match contact.end.is_nan() {
         true => "to the end".to_owned(),
         false => significant((contact.end - contact.begin) * 1e6, 4),
@@ -263,7 +293,8 @@ fn contact_row(run: &Run<'_>, contact: &Contact) -> String {
     ];
     let cells: String = cells.iter().map(|cell| format!("<td>{cell}</td>")).collect();
     let joint = joint.map_or_else(dash, |joint| escape(joint));
-    format!("<tr><th scope=\"row\">{joint}</th>{cells}</tr>\n")
+    let class = if contact.peak_time > ends { " class=\"beyond\"" } else { "" };
+    format!("<tr{class}><th scope=\"row\">{joint}</th>{cells}</tr>\n")
 }
 
 /// Rows of named quantities, a column a run.

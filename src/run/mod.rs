@@ -23,7 +23,7 @@ pub use schedule::Schedule;
 pub use trajectory::Trajectory;
 pub use witness::Contradiction;
 
-use crate::clearance::{EventSlot, Mode};
+use crate::clearance::{Clearance, EventSlot, Mode};
 use crate::dae::{Advance, Direction, Engine, Fault, Snapshot, State, System};
 use crate::mechanism::Mechanism;
 use crate::scalar::Scalar;
@@ -81,6 +81,25 @@ pub enum Error<E: std::error::Error + 'static, R: std::error::Error + 'static> {
     /// What the run has come to cannot be.
     #[error("the run contradicts itself")]
     Contradiction(#[source] Contradiction),
+    /// A journal is so deep in its bearing that no contact law means anything.
+    #[error(
+        "the journal of {clearance} is {depth:.4e} m deep in its bearing at t = {time:e} s; its \
+         contact law means nothing beyond {allowed:.4e} m, {share} of the journal's radius \
+         (maximum_penetration). A mechanism that cannot turn, a stiffness in other units than \
+         N/m^n or a load far too large comes to this: `freeplay check` says which is likely"
+    )]
+    TooDeep {
+        /// Key of the joint.
+        clearance: String,
+        /// Penetration (m).
+        depth: f64,
+        /// The largest that is believed (m).
+        allowed: f64,
+        /// The same as a share of the journal's radius.
+        share: f64,
+        /// Where (s).
+        time: f64,
+    },
     /// What was to be kept could not be.
     #[error(transparent)]
     Recorder(R),
@@ -140,6 +159,8 @@ struct Run<'a, S: Scalar, E: Engine<S>, R> {
     witness: Witness,
     scratch: Snapshot<S>,
     touching: Vec<Option<Touching<S>>>,
+    /// Largest penetrations that the contact laws are believed for (m), by clearance.
+    allowed_depths: Vec<f64>,
     contacts: Contacts,
     peaks: Vec<Peak>,
     /// Extremes of the present revolution; `None` where nobody keeps them.
@@ -176,12 +197,15 @@ where
     let (clearances, length) = (system.modes().len(), system.length());
     let speed = system.scales().1.first().copied().unwrap_or(0.0);
     let names = system.model().names().clearances.clone();
+    let deepest = |c: &Clearance<S>| c.maximum_penetration * c.journal_radius.to_f64();
+    let allowed_depths = system.model().clearances().iter().map(deepest).collect();
     let tracker = recorder
         .keeps_revolutions()
         .then(|| Box::new(Tracker::new(system.measures(), system.revolution())));
     let mut run = Run {
         scratch: start.clone(),
         touching: vec![None; clearances],
+        allowed_depths,
         engine,
         recorder,
         schedule,
@@ -219,6 +243,7 @@ where
         self.await_sample(0);
         self.begin_contacts()?;
         self.sample(false)?;
+        self.check_depths()?;
         let end: S = self.schedule.duration();
         while self.engine.now().time < end {
             let before = self.engine.now().time;
@@ -235,6 +260,7 @@ where
             self.follow_contacts()?;
             self.follow_extremes()?;
             self.sample(advance == Advance::Event)?;
+            self.check_depths()?;
             match advance {
                 Advance::Event => self.event()?,
                 Advance::Stepped if self.progress.steps.is_multiple_of(DRIFT_EVERY) => {
@@ -274,6 +300,29 @@ where
         let system = self.engine.system();
         let clearance = system.model().names().clearances[system.slot(slot).0].clone();
         Err(Error::Missed { clearance, time })
+    }
+
+    /// Whether every contact is as shallow as its law can be believed, at the end of the step.
+    fn check_depths(&mut self) -> Outcome<(), S, E, R> {
+        let depths = self.touching.iter().map(|touching| touching.as_ref().map(|t| t.last.depth));
+        let depths = depths.map(|depth| depth.map_or(0.0, S::to_f64));
+        let mut beyond = depths.zip(&self.allowed_depths).enumerate();
+        match beyond.find(|(_, (depth, allowed))| !(depth <= *allowed)) {
+            Some((k, (depth, _))) => Err(self.too_deep(k, depth)),
+            None => Ok(()),
+        }
+    }
+
+    fn too_deep(&mut self, k: usize, depth: f64) -> Error<E::Error, R::Error> {
+        let time = self.engine.now().time.to_f64();
+        let model = self.engine.system().model();
+        Error::TooDeep {
+            clearance: format!("joints.{}", model.names().clearances[k]),
+            depth,
+            allowed: self.allowed_depths[k],
+            share: model.clearances()[k].maximum_penetration,
+            time,
+        }
     }
 
     fn tell(&mut self, watch: Watcher<'_>) -> Outcome<(), S, E, R> {

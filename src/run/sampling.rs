@@ -1,6 +1,7 @@
 //! Samples of the last step: those due by the schedule, and those that adaptive sampling adds.
 
 use super::recorder::Recorder;
+use super::window::is_same_time;
 use super::{Outcome, Run};
 use crate::dae::Engine;
 use crate::mechanism::{ContactRates, Mechanism, Observation};
@@ -62,9 +63,13 @@ where
         marks.sort_by(|a, b| a.time.to_f64().total_cmp(&b.time.to_f64()));
         for mark in &marks {
             self.sample_until(mark.time)?;
-            let observation = self.observe(mark.time, mark.time.to_f64())?;
-            let keep = mark.peak.is_some() || (at_event && mark.time == now);
-            self.window.push(observation, keep);
+            // a sample of the grid that is due some ulps later will stand for it
+            let next = self.next_time.map_or(f64::INFINITY, S::to_f64);
+            if !is_same_time(mark.time.to_f64(), next) {
+                let observation = self.observe(mark.time, mark.time.to_f64())?;
+                let keep = mark.peak.is_some() || (at_event && mark.time == now);
+                self.window.push(observation, keep);
+            }
             if let Some(peak) = mark.peak {
                 self.let_samples_go(&[peak])?;
             }

@@ -33,7 +33,9 @@ impl Schedule {
         let nearest = quotient.round();
         let whole = (quotient - nearest).abs() <= quotient * F256::from_f64(1e-60);
         let last = if whole { nearest } else { quotient.floor() };
-        let multiples = last.to_f64() as u64 + 1;
+        // times are told as doubles: a multiple with the double of the duration is the duration
+        let told_as_the_end = !whole && (last * interval).to_f64() >= duration.to_f64();
+        let multiples = last.to_f64() as u64 + u64::from(!told_as_the_end);
         let grid = Grid::Uniform { interval, multiples, ends_between: !whole };
         Schedule { duration, grid, adaptive: false }
     }
@@ -123,6 +125,20 @@ mod tests {
         let schedule = schedule("0.25", "0.1");
         let times: Vec<f64> = (0..schedule.len()).map(|k| schedule.time(k)).collect();
         assert_eq!(times, [0.0, 0.1, 0.2, 0.25]);
+    }
+
+    #[test]
+    fn no_time_is_told_twice_however_many_digits_the_interval_has() {
+        for (duration, interval) in [
+            ("0.3", "0.09999999999999999999"),
+            ("1", "0.33333333333333333333"),
+            ("0.06", "9.9999999999999999999e-6"),
+        ] {
+            let schedule = schedule(duration, interval);
+            let times: Vec<f64> = (0..schedule.len()).map(|k| schedule.time(k)).collect();
+            assert!(times.windows(2).all(|pair| pair[0] < pair[1]), "{duration} by {interval}");
+            assert_eq!(times.last().copied(), Some(schedule.duration()));
+        }
     }
 
     #[test]

@@ -8,8 +8,15 @@ use crate::mechanism::Observation;
 
 /// What a straight line may miss of a force peak.
 const MISS: f64 = 0.01;
+/// Times that are no farther apart than this, relative, are one: some ulps.
+const SAME_TIME: f64 = 64.0 * f64::EPSILON;
 /// A window is closed at this many observations, wherever it stands.
 const MOST: usize = 1024;
+
+/// Whether a time (s) is that of an earlier one, but for its rounding.
+pub(super) fn is_same_time(earlier: f64, time: f64) -> bool {
+    time - earlier <= SAME_TIME * time.abs()
+}
 
 /// Observations that wait for their window to close.
 #[derive(Debug, Default)]
@@ -26,11 +33,11 @@ impl Window {
         Window { waiting: Vec::new(), carried: false, last_peaks: vec![f64::INFINITY; clearances] }
     }
 
-    /// Adds an observation; `keep` has it sampled in any case. One at the time of the last is
-    /// the same.
+    /// Adds an observation; `keep` has it sampled in any case. One at the time of the last, or so
+    /// little later that rounding is most of the difference, is the same.
     pub fn push(&mut self, observation: Observation, keep: bool) {
         match self.waiting.last_mut() {
-            Some((last, kept)) if last.time >= observation.time => *kept |= keep,
+            Some((last, kept)) if is_same_time(last.time, observation.time) => *kept |= keep,
             _ => self.waiting.push((observation, keep)),
         }
     }
@@ -143,6 +150,16 @@ mod tests {
                 assert!(miss <= 1.05 * MISS * 1000.0, "{miss} N at {t}");
             }
         }
+    }
+
+    #[test]
+    fn no_two_samples_are_a_few_ulps_apart() {
+        let mut window = Window::new(1);
+        for (time, keep) in [(0.0, true), (0.3, true), (0.3 + 8e-17, true), (0.4, false)] {
+            window.push(at(time, 0.0), keep);
+        }
+        let times: Vec<f64> = window.close(&[]).iter().map(|o| o.time).collect();
+        assert_eq!(times, [0.0, 0.3, 0.4]);
     }
 
     #[test]

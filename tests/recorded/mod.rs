@@ -411,5 +411,6 @@ pub fn complete() -> Ending {
         rulings: vec![freeplay::dae::Count { name: "tension", value: 7 }],
         finished_utc: "2026-03-01T12:00:01Z".to_owned(),
         series: Vec::new(),
+        attributes: Vec::new(),
     }
 }

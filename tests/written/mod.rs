@@ -41,8 +41,9 @@ impl Run {
         ran.unwrap();
         let (counts, rulings) = (statistics.engine, statistics.rulings);
         let (outcome, finished_utc) = (Outcome::Complete, String::new());
-        let series = Vec::new();
-        writer.finish(Ending { outcome, counts, rulings, finished_utc, series }).unwrap();
+        let (series, attributes) = (Vec::new(), Vec::new());
+        let ending = Ending { outcome, counts, rulings, finished_utc, series, attributes };
+        writer.finish(ending).unwrap();
         Run { folder, path }
     }
 

@@ -63,6 +63,7 @@ class Panel {
           setCursor: [(plot) => this.hover(plot)],
           setSelect: [(plot) => this.select(plot)],
           draw: [() => this.placeNow()],
+          drawClear: [(plot) => this.drawBeyond(plot, quantity)],
           drawAxes: [(plot) => this.drawMarks(plot, quantity)],
         },
       },
@@ -125,6 +126,12 @@ class Panel {
       curve.output = element("output", "value");
       key.append(element("i", "swatch"), element("span", "", name), curve.output);
       this.head.append(key);
+    }
+    const end = horizonOf(this.run, this.card.quantity);
+    if (end === null) delete this.place.dataset.beyond;
+    else {
+      this.place.dataset.beyond = end * 1e3;
+      this.head.append(element("span", "muted", `grey: beyond the horizon at ${milliseconds(end)} ms, one draw from a distribution`));
     }
     if (this.curves.length === 0) this.head.append(element("span", "muted", "nothing of this in this run"));
   }
@@ -203,6 +210,19 @@ class Panel {
     const inside = x >= -0.5 && x <= this.plot.over.clientWidth + 0.5;
     this.line.hidden = !inside;
     if (inside) this.line.style.transform = `translateX(${x}px)`;
+  }
+
+  /** Grey ground behind the horizon of the run, where its numbers mean nothing any more. */
+  drawBeyond(plot, quantity) {
+    const { ctx, bbox } = plot;
+    const end = horizonOf(this.run, quantity);
+    if (end === null) return;
+    const from = Math.min(Math.max(plot.valToPos(end * 1e3, "x", true), bbox.left), bbox.left + bbox.width);
+    ctx.save();
+    ctx.fillStyle = theme().muted;
+    ctx.globalAlpha = 0.22;
+    ctx.fillRect(from, bbox.top, bbox.left + bbox.width - from, bbox.height);
+    ctx.restore();
   }
 
   /** Horizontal marks, as the clearance of a journal. */
@@ -451,6 +471,13 @@ export class Charts {
   rebuild() {
     for (const card of this.cards) card.build();
   }
+}
+
+/** Time (s) behind which a quantity of a run means nothing; null where all of it does. */
+function horizonOf(run, quantity) {
+  if (!run.horizon) return null;
+  const end = run.horizon[quantity.state ? 0 : 1];
+  return end < run.end ? end : null;
 }
 
 /** A value at a time on the straight lines between rows. */

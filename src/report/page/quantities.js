@@ -13,7 +13,8 @@ const column = (dataset) => (run, item) => run.column(dataset, item);
 
 /**
  * Cards in their order. `items(run)` names the curves that a run can have, `values(run, item)`
- * gives one over the run's rows; `joints` says that the items are joints, which have colours of
+ * gives one over the run's rows; `state` says that it is known as long as the state is, and not
+ * only as long as forces are; `joints` says that the items are joints, which have colours of
  * their own; `floor` keeps the axis from going below; `sampled` says that the curve knows nothing
  * between the samples; `first` names the curves to begin with, and `alone` keeps the ideal
  * mechanism's away.
@@ -32,6 +33,7 @@ export const QUANTITIES = [
   },
   {
     id: "eccentricity",
+    state: true,
     title: "Eccentricity of journal in bearing",
     unit: "m",
     joints: true,
@@ -44,6 +46,7 @@ export const QUANTITIES = [
   },
   {
     id: "depth",
+    state: true,
     title: "Depth of penetration",
     unit: "m",
     joints: true,
@@ -73,6 +76,7 @@ export const QUANTITIES = [
   },
   {
     id: "rate",
+    state: true,
     title: "Angular velocity",
     unit: "rad/s",
     open: false,
@@ -81,6 +85,7 @@ export const QUANTITIES = [
   },
   {
     id: "energy",
+    state: true,
     title: "Energies and works",
     unit: "J",
     open: true,
@@ -91,6 +96,7 @@ export const QUANTITIES = [
   },
   {
     id: "residual",
+    state: true,
     title: "Residual of the energy balance",
     unit: "J",
     open: false,

@@ -103,7 +103,13 @@ export class Strip {
         pen.fillRect(this.x(turn * this.period), 0, 1, height);
       }
     }
-    this.lanes.forEach(({ name, contacts }, k) => {
+    this.lanes.forEach(({ run, name, contacts }, k) => {
+      if (run.horizon && run.horizon[0] < run.end) {
+        pen.fillStyle = theme().muted;
+        pen.globalAlpha = 0.22;
+        pen.fillRect(this.x(run.horizon[0]), k * this.lane + 2, this.x(run.end) - this.x(run.horizon[0]), this.lane);
+        pen.globalAlpha = 1;
+      }
       const top = 2 + k * this.lane;
       pen.fillStyle = theme().faint;
       pen.fillRect(GUTTER, top + this.lane / 2 - 0.5, width - GUTTER, 1);
