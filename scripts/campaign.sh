@@ -20,10 +20,10 @@ mkdir -p "$folder/fallen" "$folder/certificates"
 cargo build --locked --release
 
 status=0
-CAMPAIGN_MECHANISMS=$mechanisms CAMPAIGN_SEED=$seed CAMPAIGN_FOLDER=$folder/fallen \
-    cargo test --locked --release --test campaign -- --ignored --nocapture the_whole_campaign || status=1
+CAMPAIGN_MECHANISMS=$mechanisms CAMPAIGN_SEED=$seed CAMPAIGN_SAMPLES=20000 CAMPAIGN_FALLEN=$folder/fallen \
+    cargo test --locked --release --test campaign -- --nocapture random_mechanisms || status=1
 
-CAMPAIGN_MECHANISMS=$certificates CAMPAIGN_SEED=$((seed + 1)) CAMPAIGN_FOLDER=$folder/certificates \
-    cargo test --locked --release --test campaign -- --ignored --nocapture short_cases
+CAMPAIGN_CERTIFICATES=$certificates CAMPAIGN_SEED=$((seed + 1)) CAMPAIGN_CASES=$folder/certificates \
+    cargo test --locked --release --test campaign -- --nocapture short_cases
 .venv/bin/python scripts/campaign_certificates.py target/release/freeplay "$folder/certificates" || status=1
 exit $status
