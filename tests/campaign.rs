@@ -32,6 +32,9 @@ fn assert_kept(tally: &Tally) {
     ] {
         assert_eq!(tally.count(kind), 0, "{kind}:\n{}", tally.table());
     }
+    // draws that no law means anything for are few, and every engine says so at every tolerance
+    let refused = tally.count("too deep");
+    assert!(refused % 6 == 0 && refused * 20 <= tally.runs, "{}", tally.table());
     let failures = tally.count("fails");
     assert!(failures * 1000 <= tally.runs, "{failures} of {} runs:\n{}", tally.runs, tally.table());
 }

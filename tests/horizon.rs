@@ -293,7 +293,7 @@ fn a_run_stops_where_a_journal_is_deeper_than_its_law_can_mean() {
         assert_eq!(file.text("run_status"), Some("failed"));
         let depths = file.table("penetration").unwrap().values;
         let deepest = depths.iter().copied().fold(0.0, f64::max);
-        assert!(depths.len() > 1 && deepest < 2e-3, "{name}: {deepest}");
+        assert!(depths.len() > 1 && deepest < 6e-3, "{name}: {deepest}");
     }
     // and a note says so beforehand
     let words = said(&freeplay(&["check", &case("four-bar-a"), "--set", soft]));

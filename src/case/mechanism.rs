@@ -74,7 +74,7 @@ fn clearance(keys: &mut TableReader) -> ClearanceDescription {
         normal: keys.table("normal", normal),
         tension: keys.choice("tension", &TENSIONS, Some("keep")).unwrap_or(Tension::Keep),
         minimum_impact_rate: keys.number_or("minimum_impact_rate", "m/s", "1e-3"),
-        maximum_penetration: keys.number_or("maximum_penetration", "", "0.1"),
+        maximum_penetration: keys.number_or("maximum_penetration", "", "0.5"),
         friction: keys.optional_table("friction", friction).flatten(),
     }
 }

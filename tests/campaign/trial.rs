@@ -370,6 +370,10 @@ fn judge(verdict: &mut Verdict, ran: &Ran, what: &str, tolerance: f64, set: &[St
     }
     match &ran.end {
         End::Complete => {}
+        // a bearing too soft for what it carries is refused, and rightly so
+        End::Failed(words) if words.contains("(maximum_penetration)") => {
+            verdict.fall("too deep", format!("{what}: {words}"), set)
+        }
         End::Failed(words) => verdict.fall("fails", format!("{what}: {words}"), set),
         End::Cut => {
             let words = format!(

@@ -88,7 +88,7 @@ fn defaults_taken_are_told() {
     for expected in [
         "joints.A.clearance.tension = \"keep\"",
         "joints.A.clearance.minimum_impact_rate = 1e-3",
-        "joints.A.clearance.maximum_penetration = 0.1",
+        "joints.A.clearance.maximum_penetration = 0.5",
         "joints.A.clearance.normal.exponent = 1.5",
         "drives.crank.kind = \"speed\"",
         "solver.norm = \"ode15s\"",
