@@ -299,7 +299,7 @@ impl Tracker {
     /// place of its begin.
     fn gather<L: Look>(&mut self, parts: Parts, look: &mut L) -> Result<usize, L::Error> {
         let (begin, end) = (self.past(0).time, self.end().time);
-        let near = NEAR * (end - begin);
+        let near = NEAR * (end - begin) / f64::from(parts.count);
         let mut inside: Vec<Station> = Vec::new();
         while end - self.boundary > BEGUN * self.period {
             if self.boundary <= begin {
@@ -805,11 +805,11 @@ mod tests {
     }
 
     #[test]
-    fn a_measure_that_rises_all_the_time_is_not_looked_at() {
+    fn a_measure_that_rises_all_the_time_is_looked_at_only_after_a_restart() {
         let (rows, looks) = follow(|t| t.exp(), &steps(0.05, 2.0), None, WHOLE);
         assert_eq!(rows[0].largest[0], Extremum { value: 2_f64.exp(), time: 2.0 });
         assert_eq!(rows[0].smallest[0], Extremum { value: 1.0, time: 0.0 });
-        assert_eq!(looks, 0);
+        assert!(looks <= 2, "{looks} looks");
     }
 
     #[test]
