@@ -6,7 +6,7 @@
 //! peaks.
 
 use super::refine::{maximum, stands_out};
-use super::tally::{Basis, Extreme, Tally};
+use super::tally::{Basis, Extreme, Tally, accuracy};
 use super::{Error, Quantity, Revolutions};
 use crate::case::{Case, Changes};
 use crate::dae::Fault;
@@ -49,7 +49,8 @@ impl RunExtremes {
             let end = period.map_or(end, |period| end.min(period.period()));
             return Self::of_assembled(assembled, end, None);
         }
-        let mut recording = Recording::new(simulation.mechanism(), end);
+        let tolerance = case.plan.solver.relative_tolerance;
+        let mut recording = Recording::new(simulation.mechanism(), end, accuracy(tolerance));
         let (_, ran) = simulation.run(&mut recording, &mut |_| ControlFlow::Continue(()));
         ran.map_err(Error::Simulation)?;
         Ok(recording.into_extremes())
@@ -104,12 +105,13 @@ impl RunExtremes {
             return Self::of_assembled(assembled, end, parts);
         }
         let revolutions = file.revolutions()?;
+        let accuracy = accuracy(file.number("relative_tolerance").unwrap_or(f64::INFINITY));
         let friction = revolutions.is_empty() && has_friction(file)?;
         let mut quantities = Vec::new();
         for quantity in Quantity::all(&names) {
             let mut tally = Tally::new(parts, quantity.is_signed());
             for (k, revolution) in revolutions.iter().enumerate() {
-                tally.take_found(k, revolution, quantity);
+                tally.take_found(k, revolution, quantity, accuracy);
             }
             if revolutions.is_empty() {
                 take_samples(&mut tally, &times, &values_of(file, quantity)?);
@@ -237,15 +239,17 @@ struct Recording {
     names: Names,
     quantities: Vec<Quantity>,
     end: f64,
+    /// Of what the run finds.
+    accuracy: f64,
     tallies: Vec<Tally>,
 }
 
 impl Recording {
-    fn new(mechanism: &Mechanism<f64>, end: f64) -> Self {
+    fn new(mechanism: &Mechanism<f64>, end: f64, accuracy: f64) -> Self {
         let names = mechanism.model().names().clone();
         let quantities = Quantity::all(&names);
         let tallies = quantities.iter().map(|quantity| Tally::new(None, quantity.is_signed()));
-        Recording { tallies: tallies.collect(), names, quantities, end }
+        Recording { tallies: tallies.collect(), names, quantities, end, accuracy }
     }
 
     fn into_extremes(self) -> RunExtremes {
@@ -287,7 +291,7 @@ impl Recorder for Recording {
     fn revolution(&mut self, revolution: &Revolution) -> Result<(), Infallible> {
         if revolution.end <= self.end {
             for (tally, quantity) in self.tallies.iter_mut().zip(&self.quantities) {
-                tally.take_found(0, revolution, *quantity);
+                tally.take_found(0, revolution, *quantity, self.accuracy);
             }
         }
         Ok(())

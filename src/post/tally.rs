@@ -45,16 +45,24 @@ impl Extreme {
         Extreme { value, time, basis, uncertainty: None }
     }
 
-    /// An extreme that the run found in a span in which the largest magnitude is this.
-    pub fn found(found: Extremum, magnitude: f64) -> Self {
+    /// An extreme that the run found, to this accuracy.
+    pub fn found(found: Extremum, uncertainty: f64) -> Self {
         let Extremum { value, time } = found;
-        Extreme { value, time, basis: Basis::Peak, uncertainty: Some(FOUND * magnitude) }
+        Extreme {
+            value,
+            time,
+            basis: Basis::Peak,
+            uncertainty: Some(uncertainty).filter(|u| u.is_finite()),
+        }
     }
 }
 
-/// What the search of a run may leave out of an extreme, and rounding and drift off the
-/// constraints beside it, of the largest magnitude of its revolution.
-const FOUND: f64 = 10.0 * LEFT_OUT;
+/// What the extremes of a run of this relative tolerance may be off by from its trajectory, of the
+/// largest magnitude of their revolution: what the search leaves out, rounding and drift off the
+/// constraints, and what the inside of a step is known to.
+pub(super) fn accuracy(tolerance: f64) -> f64 {
+    (10.0 * LEFT_OUT).max(10.0 * tolerance)
+}
 
 /// The largest and the smallest value over a span; `None` if there was no number in it.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -127,15 +135,22 @@ impl Tally {
 }
 
 impl Tally {
-    /// Takes what a run found of a quantity in revolution `k`.
-    pub fn take_found(&mut self, k: usize, revolution: &Revolution, quantity: Quantity) {
+    /// Takes what a run found of a quantity in revolution `k`, to an accuracy that is relative to
+    /// the largest magnitude in it.
+    pub fn take_found(
+        &mut self,
+        k: usize,
+        revolution: &Revolution,
+        quantity: Quantity,
+        accuracy: f64,
+    ) {
         let (measure, item) = quantity.measure();
         let largest = revolution.largest(measure).nth(item);
         let smallest = revolution.smallest(measure).nth(item).filter(|_| self.signed);
         let both = || largest.into_iter().chain(smallest);
         let magnitude = both().map(|found| found.value.abs()).fold(0.0, f64::max);
         for found in both().filter(|found| found.value.is_finite() && found.time.is_finite()) {
-            let found = Extreme::found(found, magnitude);
+            let found = Extreme::found(found, accuracy * magnitude);
             self.total.take(found, self.signed);
             if let Some(extremes) = self.revolutions.get_mut(k) {
                 extremes.take(found, self.signed);
