@@ -10,10 +10,10 @@ use std::ops::ControlFlow;
 use std::path::Path;
 
 /// What the search leaves out, and what rounding and drift off the constraints do beside it, over
-/// the largest magnitude in the revolution; or what the inside of a step is known to, ten times
+/// the largest magnitude in the revolution; or what the inside of a step is known to, a hundred times
 /// the tolerance of the run.
 fn allowed(case: &Case) -> f64 {
-    (10.0 * case.plan.solver.relative_tolerance).max(1e-7)
+    (100.0 * case.plan.solver.relative_tolerance).max(1e-7)
 }
 
 const MEASURES: [Measure; 7] = [
@@ -251,7 +251,7 @@ fn a_contact_within_one_step_and_an_open_one_have_their_largest_force() {
         let set: Vec<&str> = set.iter().map(String::as_str).collect();
         let case = case("cases/four-bar-a.toml", &set);
         let run = trajectory(Simulation::new(&case).unwrap());
-        assert!(run.contacts.len() > 20);
+        assert!(run.contacts.len() > 10);
         for contact in &run.contacts {
             let end = if contact.end.is_nan() { f64::INFINITY } else { contact.end };
             let inside = (run.samples.iter())

@@ -18,7 +18,7 @@ with h5py.File(path, "r") as file:
             check(dataset.name, "dimensions", names, dataset.dimensions)
         dataset.check_values(found[()].reshape(-1))
     known = {dataset.name for dataset in datasets}
-    scales = {"time", "body", "joint", "clearance", "drive", "event", "contact", "peak"}
+    scales = {"time", "body", "joint", "clearance", "drive", "event", "contact", "peak", "revolution"}
     check("/", "set of datasets", set(file), known | scales)
     for name in scales - {"time"}:
         check(name, "values", list(file[name][()]), list(range(len(file[name]))))

@@ -19,6 +19,6 @@ with xarray.open_dataset(path, engine=sys.argv[4]) as file:
         check(dataset.name, "shape", found.shape, dataset.shape)
         check(dataset.name, "units", found.attrs["units"], dataset.unit)
         dataset.check_values(found.values.reshape(-1))
-    coordinates = {"time", "body", "joint", "clearance", "drive", "event", "contact", "peak"}
+    coordinates = {"time", "body", "joint", "clearance", "drive", "event", "contact", "peak", "revolution"}
     check("/", "set of coordinates", set(file.coords), coordinates)
     check("/", "set of dimensions", set(file.sizes), coordinates)
