@@ -427,6 +427,9 @@ where
         };
         self.progress.events += 1;
         let time = self.scratch.time.to_f64();
+        if let (EventKind::Tension, Some(touching)) = (kind, self.touching[clearance].as_mut()) {
+            touching.pulled = true;
+        }
         if kind == EventKind::ContactBegins {
             let begins = self.witness.begins(clearance, rate.to_f64(), time);
             begins.map_err(Error::Contradiction)?;
