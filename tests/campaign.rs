@@ -54,7 +54,7 @@ fn folder(name: &str) -> Option<PathBuf> {
 fn random_mechanisms_hold_what_is_promised() {
     let folder = folder("CAMPAIGN_FALLEN");
     let campaign = Campaign {
-        mechanisms: asked("CAMPAIGN_MECHANISMS", 60),
+        mechanisms: asked("CAMPAIGN_MECHANISMS", 200),
         seed: asked("CAMPAIGN_SEED", SEED),
         samples: asked("CAMPAIGN_SAMPLES", 5000),
         told: folder.is_some(),

@@ -210,7 +210,7 @@ fn a_disc_that_comes_to_rest_takes_no_more_steps_than_a_moving_one() {
 }
 
 #[test]
-fn a_mechanism_a_kilometre_away_takes_steps_that_its_rounding_allows() {
+fn a_mechanism_a_kilometre_away_takes_no_more_steps() {
     let path = root().join("cases/four-bar-a.toml");
     let text = std::fs::read_to_string(path).unwrap();
     let steps = |set: &[&str]| {
@@ -226,6 +226,5 @@ fn a_mechanism_a_kilometre_away_takes_steps_that_its_rounding_allows() {
         "start.follower.y=1000.0",
     ];
     let (near, far) = (steps(&[]), steps(&far));
-    // positions there have four places less, and forces of contacts with them
-    assert!(far < 20 * near, "{far} {near}");
+    assert!(far * 10 < 11 * near, "{far} {near}");
 }

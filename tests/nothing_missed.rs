@@ -414,8 +414,7 @@ fn a_mechanism_far_from_the_origin_does_not_crawl() {
         steps("cases/four-bar-a.toml", &[&a0, &b0, &start, "run.duration=0.005"])
     };
     let (near, far) = (linkage("0.0", "0.09", "0.2"), linkage("1000.0", "1000.09", "1000.2"));
-    // coordinates have three digits less there, and contact forces of stiff bearings feel it
-    assert!(far <= 10 * near, "{far} steps a kilometre away, {near} at the origin");
+    assert!(far * 10 <= near * 11, "{far} steps a kilometre away, {near} at the origin");
 }
 
 #[test]

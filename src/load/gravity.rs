@@ -1,6 +1,6 @@
 //! Gravity: a uniform field.
 //! ```text
-//! F = m g,   V = −m g·r
+//! F = m g,   V = −m g·(r − r₀)
 //! ```
 
 use crate::plane::{Pose, Vector, Wrench};
@@ -11,6 +11,8 @@ use crate::scalar::Scalar;
 pub struct Gravity<S> {
     /// Acceleration of free fall g (m/s²), fixed frame.
     pub acceleration: Vector<S>,
+    /// Where potential energy is zero (m).
+    pub datum: Vector<S>,
 }
 
 impl<S: Scalar> Gravity<S> {
@@ -22,9 +24,11 @@ impl<S: Scalar> Gravity<S> {
         }
     }
 
-    /// Potential energy (J), zero at the origin of the fixed frame.
+    /// Potential energy (J), zero at the datum.
     pub fn potential_energy(&self, masses: &[S], poses: &[Pose<S>]) -> S {
-        let weigh = |(mass, pose): (&S, &Pose<S>)| *mass * self.acceleration.dot(pose.position);
+        let weigh = |(mass, pose): (&S, &Pose<S>)| {
+            *mass * self.acceleration.dot(pose.position - self.datum)
+        };
         -masses.iter().zip(poses).map(weigh).fold(S::zero(), |sum, v| sum + v)
     }
 }

@@ -33,7 +33,7 @@ impl<S: Scalar> Mechanism<S> {
             return beyond;
         }
         for (pose, motion) in self.now.poses.iter().zip(&self.now.motions).skip(1) {
-            let (at, going) = (pose.position, motion.linear);
+            let (at, going) = (pose.position + self.model.origin(), motion.linear);
             let state = [at.x, at.y, pose.angle, going.x, going.y, motion.angular];
             beyond.extend(state.map(S::beyond));
         }
@@ -48,7 +48,7 @@ impl<S: Scalar> Mechanism<S> {
         let (pose, motion) = (&self.now.poses[body], &self.now.motions[body]);
         let acceleration = &self.now.accelerations[body];
         BodyObservation {
-            position: doubles(pose.position),
+            position: doubles(pose.position + self.model.origin()),
             angle: pose.angle.to_f64(),
             velocity: doubles(motion.linear),
             angular_velocity: motion.angular.to_f64(),

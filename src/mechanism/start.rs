@@ -92,7 +92,8 @@ impl<S: Scalar> Mechanism<S> {
     /// Finds the start, the scales and the first modes.
     pub(super) fn assemble(&mut self) -> Result<(), Vec<Complaint>> {
         self.length = characteristic_length(self);
-        let mut q = self.named(|start| start.coordinates);
+        let origin = self.model.origin();
+        let mut q = self.named(|start| start.coordinates, [-origin.x, -origin.y, S::zero()]);
         let positions = self.assemble_positions(&mut q);
         self.check_positions(&q)?;
         let (v, velocities) = self.assemble_velocities(&q)?;
@@ -184,12 +185,12 @@ impl<S: Scalar> Mechanism<S> {
         Ok(())
     }
 
-    /// Values that the starts name, zero where they do not.
-    fn named(&self, of: fn(&Start<S>) -> [Option<S>; 3]) -> Vec<S> {
+    /// Values that the starts name, others where they do not.
+    fn named(&self, of: fn(&Start<S>) -> [Option<S>; 3], otherwise: [S; 3]) -> Vec<S> {
         let mut x = vec![S::zero(); self.layout.coordinates];
         for (body, at) in self.free_bodies() {
             for (c, value) in of(&self.model.starts()[body - 1]).into_iter().enumerate() {
-                x[at + c] = value.unwrap_or(S::zero());
+                x[at + c] = value.unwrap_or(otherwise[c]);
             }
         }
         x
@@ -525,7 +526,7 @@ impl<S: Scalar> Mechanism<S> {
             }]
         })?;
         let fixed = self.fixed(|start| start.velocities);
-        let named = self.named(|start| start.velocities);
+        let named = self.named(|start| start.velocities, [S::zero(); 3]);
         let scales = self.column_scales();
         let mut v = named.clone();
         let mut solved = Solved { left: f64::INFINITY, condition: 1.0, at_rest: false };

@@ -18,7 +18,7 @@ use crate::friction::Ambrosio;
 use crate::joint::{Pair, SpeedDrive};
 use crate::load::{Gravity, Load};
 use crate::plane::Vector;
-use crate::scalar::{Decimal, Scalar};
+use crate::scalar::{Decimal, F256, Scalar};
 
 /// Index of the ground among the bodies.
 pub const GROUND: usize = 0;
@@ -44,7 +44,7 @@ pub struct Drive<S> {
 /// Where a body starts: the keys a case names.
 #[derive(Debug, Clone, Copy)]
 pub struct Start<S> {
-    /// x, y (m) and angle (rad).
+    /// x, y (m, from the model's origin) and angle (rad).
     pub coordinates: [Option<S>; 3],
     /// Their rates (m/s, rad/s).
     pub velocities: [Option<S>; 3],
@@ -69,6 +69,7 @@ pub struct Names {
 #[derive(Debug, Clone)]
 pub struct Model<S> {
     names: Names,
+    origin: Vector<S>,
     masses: Vec<S>,
     inertias: Vec<S>,
     joints: Vec<Joint<S>>,
@@ -89,6 +90,7 @@ impl<S: Scalar> Model<S> {
             return Err(complaints);
         }
         let names = names(description);
+        let frame = Frame::of(description);
         let bodies = || description.bodies.iter();
         let with_ground = |of: fn(&BodyDescription) -> &Decimal| {
             std::iter::once(S::zero()).chain(bodies().map(|body| of(body).value())).collect()
@@ -96,7 +98,7 @@ impl<S: Scalar> Model<S> {
         let mut joints = Vec::new();
         let mut clearances = Vec::new();
         for joint in &description.joints {
-            let pair = pair(description, joint);
+            let pair = pair(description, &frame, joint);
             let JointKind::Revolute { clearance } = &joint.kind;
             let clearance = clearance.as_ref().map(|clearance| {
                 clearances.push(read_clearance(pair, clearance));
@@ -111,25 +113,34 @@ impl<S: Scalar> Model<S> {
             Drive { joint, law: SpeedDrive::new(i, j, speed_rpm, angle) }
         });
         let loads = description.loads.iter().map(|load| match &load.kind {
-            LoadKind::Gravity { acceleration } => {
-                Load::Gravity(Gravity { acceleration: vector(acceleration) })
-            }
+            LoadKind::Gravity { acceleration } => Load::Gravity(Gravity {
+                acceleration: vector(acceleration),
+                datum: -frame.origin(),
+            }),
         });
         Ok(Model {
             masses: with_ground(|body| &body.mass),
             inertias: with_ground(|body| &body.inertia),
             drives: drives.collect(),
             loads: loads.collect(),
-            starts: bodies().map(|body| start(description, &body.name)).collect(),
+            starts: bodies().map(|body| start(description, &frame, &body.name)).collect(),
             joints,
             clearances,
             names,
+            origin: frame.origin(),
         })
     }
 
     /// Names of the parts.
     pub fn names(&self) -> &Names {
         &self.names
+    }
+
+    /// Where positions of the model are counted from (m, fixed frame): the first point of the
+    /// ground that a joint sits on. A mechanism far from the origin of the fixed frame so keeps the
+    /// digits that its coordinates there would take.
+    pub fn origin(&self) -> Vector<S> {
+        self.origin
     }
 
     /// Masses by body (kg); that of the ground counts as zero.
@@ -186,6 +197,34 @@ fn names(description: &Description) -> Names {
     }
 }
 
+/// The frame of the model: along the fixed frame, from an origin of its own.
+struct Frame<'a> {
+    origin: Option<&'a [Decimal; 2]>,
+}
+
+impl<'a> Frame<'a> {
+    fn of(description: &'a Description) -> Frame<'a> {
+        let mut ends = description.joints.iter().flat_map(|joint| &joint.between);
+        let origin = ends.find_map(|end| {
+            let name = end.strip_prefix("ground.")?;
+            let point = description.ground.iter().find(|point| point.name == name)?;
+            Some(&point.at)
+        });
+        Frame { origin }
+    }
+
+    /// Its origin (m, fixed frame).
+    fn origin<S: Scalar>(&self) -> Vector<S> {
+        self.origin.map_or(Vector::zero(), vector)
+    }
+
+    /// A coordinate (m) that is written in the fixed frame, rounded once.
+    fn along<S: Scalar>(&self, axis: usize, written: &Decimal) -> S {
+        let Some(origin) = self.origin else { return written.value() };
+        S::from_octuple(written.value::<F256>() - origin[axis].value::<F256>())
+    }
+}
+
 fn vector<S: Scalar>(at: &[Decimal; 2]) -> Vector<S> {
     Vector::new(at[0].value(), at[1].value())
 }
@@ -198,7 +237,11 @@ fn position(names: &[String], name: &str) -> usize {
 }
 
 /// Index and place of a point written `body.point`.
-fn point<S: Scalar>(description: &Description, written: &str) -> (usize, Vector<S>) {
+fn point<S: Scalar>(
+    description: &Description,
+    frame: &Frame<'_>,
+    written: &str,
+) -> (usize, Vector<S>) {
     let (body, name) = written.split_once('.').unwrap_or((written, ""));
     let (index, points) = match body {
         "ground" => (GROUND, &description.ground),
@@ -210,12 +253,20 @@ fn point<S: Scalar>(description: &Description, written: &str) -> (usize, Vector<
     };
     let at = points.iter().find(|point| point.name == name);
     assert!(at.is_some(), "the check lets no unknown point pass, but \"{written}\" came through");
-    (index, at.map_or(Vector::zero(), |point| vector(&point.at)))
+    let place = |point: &NamedPoint| match index {
+        GROUND => Vector::new(frame.along(0, &point.at[0]), frame.along(1, &point.at[1])),
+        _ => vector(&point.at),
+    };
+    (index, at.map_or(Vector::zero(), place))
 }
 
-fn pair<S: Scalar>(description: &Description, joint: &JointDescription) -> Pair<S> {
-    let (i, s_i) = point(description, &joint.between[0]);
-    let (j, s_j) = point(description, &joint.between[1]);
+fn pair<S: Scalar>(
+    description: &Description,
+    frame: &Frame<'_>,
+    joint: &JointDescription,
+) -> Pair<S> {
+    let (i, s_i) = point(description, frame, &joint.between[0]);
+    let (j, s_j) = point(description, frame, &joint.between[1]);
     Pair { i, j, s_i, s_j }
 }
 
@@ -269,12 +320,16 @@ fn friction_law<S: Scalar>(friction: &FrictionDescription) -> Option<Ambrosio<S>
         .then(|| Ambrosio::new(coefficient, v0.value(), v1.value(), hysteresis))
 }
 
-fn start<S: Scalar>(description: &Description, body: &str) -> Start<S> {
+fn start<S: Scalar>(description: &Description, frame: &Frame<'_>, body: &str) -> Start<S> {
     let none = StartDescription::default();
     let start = description.start.iter().find(|start| start.body == body).unwrap_or(&none);
     let read = |number: &Option<Decimal>| number.as_ref().map(|number| number.value());
     Start {
-        coordinates: [read(&start.x), read(&start.y), read(&start.angle)],
+        coordinates: [
+            start.x.as_ref().map(|x| frame.along(0, x)),
+            start.y.as_ref().map(|y| frame.along(1, y)),
+            read(&start.angle),
+        ],
         velocities: [
             read(&start.velocity_x),
             read(&start.velocity_y),
