@@ -163,6 +163,12 @@ pub trait System<S: Scalar> {
     /// Time derivatives of the integrals at the state last evaluated (W).
     fn powers(&self) -> &[S];
 
+    /// Whether a power changes while nothing in the motion tells of it, as where tension is cut:
+    /// there elastic energy goes and no force does.
+    fn powers_run_free(&self) -> bool {
+        false
+    }
+
     /// How each event function is watched in the present modes; their number never changes.
     fn watches(&self) -> &[Watch];
 

@@ -4,13 +4,20 @@
 //! ```
 
 use super::Mechanism;
+use super::layout::Role;
+use crate::clearance::Mode;
 use crate::dae::{Fault, State};
 use crate::linear;
+use crate::plane::Wrench;
 use crate::scalar::Scalar;
 
 const MOST_ITERATIONS: usize = 20;
 /// A constraint that is off by more than this, over the characteristic length, does not hold.
 const OPEN: f64 = 1e-9;
+/// Depth that is none, in roundings of the characteristic length.
+const ON_THE_WALL: f64 = 1e2;
+/// Share of a change across the wall that the constraints have to leave of it.
+const MOVABLE: f64 = 1e-6;
 
 /// No position near the last one has every joint closed.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -64,6 +71,70 @@ impl<S: Scalar> Mechanism<S> {
         Ok(drift.unwrap_or(0.0))
     }
 
+    /// Puts journals in flight that are in the wall, on their way out, onto it: there contacts end
+    /// whose depth was carried beside q, and there projections may leave a journal. By the smallest
+    /// mass-weighted change again,
+    /// ```text
+    /// q ← q − d δ/(gᵀ d),   d = P M⁻¹ g,   g = ∂δ/∂q
+    /// ```
+    /// with the projector P of the constraints.
+    pub fn withdraw(&mut self, time: S, q: &mut [S], v: &mut [S]) -> Result<(), Fault> {
+        for _ in 0..MOST_ITERATIONS {
+            self.place(&State { time, q, v, carried: None });
+            let Some((k, depth)) = self.in_the_wall() else { break };
+            let across = self.across_the_wall(k);
+            let mut along: Vec<S> =
+                across.iter().zip(&self.inverse_masses).map(|(g, m)| *g * *m).collect();
+            let mobility = dot(&across, &along);
+            along.iter_mut().for_each(|d| *d = *d / mobility);
+            if self.layout.rows > 0 {
+                // v holds the constraints: what is off of the sum is what is off of `along`
+                let sum: Vec<S> = along.iter().zip(&*v).map(|(d, v)| *d + *v).collect();
+                self.place(&State { time, q, v: &sum, carried: None });
+                self.velocity_errors();
+                self.correct(&mut along)?;
+            }
+            let left = dot(&across, &along);
+            if !(left.to_f64() > MOVABLE) {
+                break;
+            }
+            q.iter_mut().zip(&along).for_each(|(q, d)| *q -= *d * depth / left);
+            self.project_onto_constraints(time, q, v)?;
+        }
+        Ok(())
+    }
+
+    /// A clearance in flight whose journal is in the wall and does not go deeper, and the depth
+    /// (m), as placed.
+    fn in_the_wall(&self) -> Option<(usize, S)> {
+        let rounding = ON_THE_WALL * S::EPSILON * self.length;
+        self.model.clearances().iter().enumerate().find_map(|(k, clearance)| {
+            let gap = self.now.gap(k, clearance);
+            let inside = self.modes[k] == Mode::Flight && gap.depth.to_f64() > rounding;
+            let leaves = inside && clearance.rates(&gap, &self.now.motions).rate <= S::zero();
+            leaves.then_some((k, gap.depth))
+        })
+    }
+
+    /// ∂δ/∂q of a clearance off its centre, as placed.
+    fn across_the_wall(&self, k: usize) -> Vec<S> {
+        let clearance = &self.model.clearances()[k];
+        let gap = self.now.gap(k, clearance);
+        let normal = clearance.rates(&gap, &self.now.motions).normal;
+        let ends = [
+            (clearance.pair.i, Wrench::at(gap.arm_i, -normal)),
+            (clearance.pair.j, Wrench::at(gap.arm_j, normal)),
+        ];
+        let mut slopes = vec![S::zero(); self.layout.coordinates];
+        for (body, wrench) in ends {
+            let Role::Free(at) = self.layout.roles[body] else { continue };
+            slopes[at] += wrench.force.x;
+            slopes[at + 1] += wrench.force.y;
+            slopes[at + 2] += wrench.moment;
+        }
+        slopes
+    }
+
     /// Refuses a position at which a constraint does not hold.
     fn check_closed(&mut self) -> Result<(), Fault> {
         let off = self.position_errors().to_f64();
@@ -106,7 +177,7 @@ impl<S: Scalar> Mechanism<S> {
             let lambda = &self.now.lambda[row.first..row.first + row.constraint.rows()];
             let on = row.constraint.wrenches(arms, lambda);
             for (body, wrench) in row.constraint.bodies().into_iter().zip(on) {
-                let super::layout::Role::Free(at) = self.layout.roles[body] else { continue };
+                let Role::Free(at) = self.layout.roles[body] else { continue };
                 let change = [wrench.force.x, wrench.force.y, wrench.moment];
                 for (c, change) in change.into_iter().enumerate() {
                     x[at + c] += change * self.inverse_masses[at + c];
@@ -115,4 +186,8 @@ impl<S: Scalar> Mechanism<S> {
         }
         Ok(())
     }
+}
+
+fn dot<S: Scalar>(a: &[S], b: &[S]) -> S {
+    a.iter().zip(b).fold(S::zero(), |sum, (a, b)| sum + *a * *b)
 }

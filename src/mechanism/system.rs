@@ -2,7 +2,7 @@
 
 use super::Mechanism;
 use super::layout::Role;
-use crate::clearance::{Bodies, Gap};
+use crate::clearance::{Bodies, Clearance, Gap, Mode};
 use crate::contact::Penetration;
 use crate::dae::{Course, Fault, State, System, Watch};
 use crate::linear::Singular;
@@ -76,6 +76,14 @@ impl<S: Scalar> System<S> for Mechanism<S> {
 
     fn powers(&self) -> &[S] {
         &self.now.powers
+    }
+
+    fn powers_run_free(&self) -> bool {
+        let cut = |(mode, clearance): (&Mode<S>, &Clearance<S>)| match mode {
+            Mode::Contact(contact) => contact.pulling && clearance.cut_tension,
+            Mode::Flight => false,
+        };
+        self.modes.iter().zip(self.model.clearances()).any(cut)
     }
 
     fn watches(&self) -> &[Watch] {

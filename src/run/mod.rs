@@ -353,6 +353,14 @@ where
         system.project(*time, q, v).map_err(|source| Error::System { time: at, source })
     }
 
+    /// Takes journals in flight in `scratch` out of the walls.
+    fn withdraw(&mut self) -> Outcome<(), S, E, R> {
+        let Snapshot { time, q, v, .. } = &mut self.scratch;
+        let system = self.engine.system();
+        let at = time.to_f64();
+        system.withdraw(*time, q, v).map_err(|source| Error::System { time: at, source })
+    }
+
     /// Evaluates the system at the state in `scratch`.
     fn evaluate(&mut self) -> Outcome<(), S, E, R> {
         let Snapshot { time, q, v, .. } = &self.scratch;
@@ -372,6 +380,7 @@ where
         let sizes = q.iter().zip(system.scales().0).map(|(q, size)| q.abs().to_f64() / size);
         let rounding = DRIFT_ROUNDINGS * S::EPSILON * sizes.fold(0.0, f64::max);
         if drift > rounding.max(DRIFT) * system.length() {
+            self.withdraw()?;
             let state = self.scratch.clone();
             self.restart(&state)?;
             self.segment += 1;
@@ -402,6 +411,7 @@ where
                 _ => {}
             }
         }
+        self.withdraw()?;
         let state = self.scratch.clone();
         self.restart(&state)?;
         self.segment += 1;

@@ -29,7 +29,7 @@ pub use tolerance::{AbsoluteTolerance, Norm};
 use crate::dae::{Advance, Count, Dae, Engine, Fault, Snapshot, State};
 use events::Events;
 use ffi::{Counters, Return, Solver};
-use quadrature::Quadrature;
+use quadrature::{Quadrature, looks};
 use tolerance::Weights;
 
 /// IDA's own measure of "at the stop time", in roundings of the time.
@@ -38,6 +38,9 @@ const ROUNDINGS_AT_END: f64 = 100.0;
 /// This many steps in a row must lead further than this many roundings of the time each.
 const STALLED_STEPS: u32 = 1000;
 const STALLED_ROUNDINGS: f64 = 16.0;
+
+/// Panels of an integral are halved no further than to this share of the step.
+const SHORTEST_PANEL: f64 = 1e-4;
 
 /// A run is given up when these many stretches of so many steps each were so short that the time
 /// left would take more than this many.
@@ -241,7 +244,7 @@ impl<Y: Dae> Ida<Y> {
         let event = self.meet_events()?;
         let time = self.now.time;
         self.quadrature.advance(time, self.solver.system_ref().powers());
-        if self.quadrature.wants_looks(time - self.began.time) {
+        if self.looks_inside(time - self.began.time) {
             let gained = self.gather(time)?;
             self.quadrature.correct(&gained);
             self.evaluate()?;
@@ -302,11 +305,39 @@ impl<Y: Dae> Ida<Y> {
         }
     }
 
+    /// Whether the integrals over IDA's last step are those of powers inside it.
+    fn looks_inside(&self, length: f64) -> bool {
+        self.quadrature.wants_looks(length) || self.solver.system_ref().powers_run_free()
+    }
+
     /// Integrals (J) from the begin of IDA's last step to a time (s) within it, of powers inside it.
     fn gather(&mut self, until: f64) -> Result<Vec<f64>, Error> {
+        let shortest = SHORTEST_PANEL * (until - self.began.time);
+        let free = self.solver.system_ref().powers_run_free();
+        let mut panels = self.quadrature.panels(self.began.time, until);
+        let mut gained = vec![0.0; self.now.integrals.len()];
+        while let Some([from, to]) = panels.pop() {
+            let mut over = self.over([from, to])?;
+            if free {
+                let middle = from.midpoint(to);
+                let mut halves = self.over([from, middle])?;
+                add(&mut halves, &self.over([middle, to])?);
+                if to - from > shortest && !self.quadrature.agree(&over, &halves) {
+                    panels.extend([[middle, to], [from, middle]]);
+                    continue;
+                }
+                over = halves;
+            }
+            add(&mut gained, &over);
+        }
+        Ok(gained)
+    }
+
+    /// Integrals (J) over a panel within IDA's last step.
+    fn over(&mut self, panel: [f64; 2]) -> Result<Vec<f64>, Error> {
         let n = self.now.q.len();
         let mut gained = vec![0.0; self.now.integrals.len()];
-        for (time, weight) in self.quadrature.looks(self.began.time, until) {
+        for (time, weight) in looks(panel) {
             let y = self.solver.interpolate(time)?[..2 * n].to_vec();
             let (q, v) = y.split_at(n);
             let evaluated = self.solver.system().evaluate(State { time, q, v, carried: None });
@@ -333,6 +364,10 @@ impl<Y: Dae> Ida<Y> {
         self.evaluate()?;
         Ok(Advance::Stepped)
     }
+}
+
+fn add(sums: &mut [f64], terms: &[f64]) {
+    sums.iter_mut().zip(terms).for_each(|(sum, term)| *sum += term);
 }
 
 impl<Y: Dae> Engine<f64> for Ida<Y> {
@@ -410,7 +445,7 @@ impl<Y: Dae> Engine<f64> for Ida<Y> {
             at.time = time;
             at.q.copy_from_slice(&y[..n]);
             at.v.copy_from_slice(&y[n..2 * n]);
-            if self.quadrature.wants_looks(now - began) {
+            if self.looks_inside(now - began) {
                 let gained = self.gather(time)?;
                 let sums = self.quadrature.before().iter().zip(gained);
                 at.integrals.iter_mut().zip(sums).for_each(|(at, (before, g))| *at = before + g);

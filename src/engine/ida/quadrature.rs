@@ -11,7 +11,8 @@
 //!
 //! IDA's steps are as long as the trajectory lets them be, which in free flight is far too long
 //! for powers that turn with a crank. Over a step in which anything turns noticeably, the powers
-//! are therefore asked for inside it.
+//! are therefore asked for inside it; and where powers change of which the trajectory tells nothing,
+//! in panels that are halved until it makes no difference.
 
 /// Most nodes that the polynomial goes through.
 const NODES: usize = 6;
@@ -31,6 +32,9 @@ const PANEL_TURN: f64 = 5e-2;
 /// Abscissas and weights of Gauss–Legendre quadrature over (−1, 1), exact to degree five.
 const GAUSS: [(f64, f64); 3] =
     [(-0.774_596_669_241_483_4, 5.0 / 9.0), (0.0, 8.0 / 9.0), (0.774_596_669_241_483_4, 5.0 / 9.0)];
+
+/// Integrals over a panel that differ by less, over the largest, are the same.
+const ALIKE: f64 = 1e-13;
 
 /// Powers at the end of one step.
 #[derive(Debug, Clone)]
@@ -77,14 +81,18 @@ impl Quadrature {
         !self.totals.is_empty() && length * self.turning > NOTICEABLE_TURN
     }
 
-    /// Times (s) and weights (s) of the powers wanted from one time to another.
-    pub(super) fn looks(&self, from: f64, to: f64) -> impl Iterator<Item = (f64, f64)> + use<> {
+    /// Panels (s) from one time to another, the last first.
+    pub(super) fn panels(&self, from: f64, to: f64) -> Vec<[f64; 2]> {
         let panels = ((to - from) * self.turning / PANEL_TURN).ceil().max(1.0);
-        let half = 0.5 * (to - from) / panels;
-        (0..panels as u64).flat_map(move |panel| {
-            let middle = from + half * (2.0 * panel as f64 + 1.0);
-            GAUSS.map(|(abscissa, weight)| (middle + half * abscissa, half * weight))
-        })
+        let at = |panel: u64| from + (to - from) * (panel as f64 / panels);
+        (0..panels as u64).rev().map(|panel| [at(panel), at(panel + 1)]).collect()
+    }
+
+    /// Whether two integrals (J) over a panel are the same, as far as the totals can tell.
+    pub(super) fn agree(&self, whole: &[f64], halves: &[f64]) -> bool {
+        let sizes = self.totals.iter().chain(halves);
+        let size = sizes.fold(0.0_f64, |size, energy| size.max(energy.abs()));
+        whole.iter().zip(halves).all(|(a, b)| (a - b).abs() <= ALIKE * size)
     }
 
     /// Replaces what the latest step added by these integrals over it (J).
@@ -195,6 +203,12 @@ impl Quadrature {
         }
         weights
     }
+}
+
+/// Times (s) and weights (s) of the powers wanted in a panel.
+pub(super) fn looks([from, to]: [f64; 2]) -> [(f64, f64); 3] {
+    let (middle, half) = (from.midpoint(to), 0.5 * (to - from));
+    GAUSS.map(|(abscissa, weight)| (middle + half * abscissa, half * weight))
 }
 
 /// Integral `k`: the sum of its powers at the nodes, weighted.
