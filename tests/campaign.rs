@@ -75,7 +75,7 @@ fn short_cases_are_cases() {
     let mut written = 0;
     for number in 0..asked("CAMPAIGN_CERTIFICATES", 12) {
         let drawn = generator::draw(seed, number);
-        if let Some(text) = trial::short(&drawn, 200) {
+        if let Some(text) = trial::short(&drawn, 60) {
             let path = folder.join(format!("{number:04}-{}.toml", drawn.kind.replace(' ', "-")));
             std::fs::write(&path, text).unwrap();
             let read = Case::read(&path, &Changes::default());
