@@ -161,32 +161,8 @@ pub fn references(
     watch: Watch<'_>,
 ) -> Result<Pair, Error> {
     let least = 10f64.powf(-digits - 1.0);
-    let mut furthest: Option<Pair> = None;
-    let mut others = OTHERS.iter();
-    let mut loose = FIRST.max(digits + 6.0);
-    let pair = loop {
-        let pair = pair(case, schedule, loose, least, watch)?;
-        let agreed = pair.agreed_until(least);
-        let tightest = loose + APART >= TIGHTEST;
-        if pair.failed() && agreed == pair.apart.len() {
-            // as far as the run that stopped came, there was agreement
-            let further = pair.or_further(furthest.take(), least);
-            match others.next().filter(|_| !tightest) {
-                None => break further,
-                Some(more) => loose = (loose + more).min(TIGHTEST - APART),
-            }
-            furthest = Some(further);
-            continue;
-        }
-        let whole = pair.apart.len() as u64 >= schedule.len();
-        if (whole && agreed == pair.apart.len()) || tightest {
-            break pair.or_further(furthest.take(), least);
-        }
-        let time = pair.tight.samples.get(agreed.saturating_sub(1)).map_or(0.0, |s| s.time);
-        let lost = (loose - digits) / time.max(1e-300);
-        let needed = digits + TO_SPARE + lost * schedule.duration::<f64>();
-        loose = needed.max(loose + 4.0).min(TIGHTEST - APART).ceil();
-    };
+    let run = |loose| pair(case, schedule, loose, least, watch);
+    let pair = search(run, digits, schedule.len(), schedule.duration())?;
     match pair {
         Pair { stopped: Some(stopped), apart, .. } if apart.is_empty() => {
             Err(Error::Stopped(stopped))
@@ -195,6 +171,43 @@ pub fn references(
             Err(Error::DifferentStarts { tolerances })
         }
         pair => Ok(pair),
+    }
+}
+
+/// The first of some pairs that agrees to `digits` at all of so many samples over a duration (s), or
+/// the one that agrees furthest. `pair` runs one, by the exponent of its looser tolerance.
+fn search(
+    mut pair: impl FnMut(f64) -> Result<Pair, Error>,
+    digits: f64,
+    samples: u64,
+    duration: f64,
+) -> Result<Pair, Error> {
+    let least = 10f64.powf(-digits - 1.0);
+    let mut furthest: Option<Pair> = None;
+    let mut others = OTHERS.iter();
+    let mut loose = FIRST.max(digits + 6.0);
+    loop {
+        let pair = pair(loose)?;
+        let agreed = pair.agreed_until(least);
+        let tightest = loose + APART >= TIGHTEST;
+        if pair.failed() && agreed == pair.apart.len() {
+            // as far as the run that stopped came, there was agreement
+            let further = pair.or_further(furthest.take(), least);
+            match others.next().filter(|_| !tightest) {
+                None => return Ok(further),
+                Some(more) => loose = (loose + more).min(TIGHTEST - APART),
+            }
+            furthest = Some(further);
+            continue;
+        }
+        let whole = pair.apart.len() as u64 >= samples;
+        if (whole && agreed == pair.apart.len()) || tightest {
+            return Ok(pair.or_further(furthest.take(), least));
+        }
+        let time = pair.tight.samples.get(agreed.saturating_sub(1)).map_or(0.0, |s| s.time);
+        let lost = (loose - digits) / time.max(1e-300);
+        let needed = digits + TO_SPARE + lost * duration;
+        loose = needed.max(loose + 4.0).min(TIGHTEST - APART).ceil();
     }
 }
 
@@ -402,5 +415,67 @@ impl Recorder for Against<'_> {
 
     fn peak(&mut self, _: Peak) -> Result<(), Infallible> {
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SAMPLES: u64 = 5;
+
+    /// A pair at this tolerance with a sample every second, so many of which both runs have, and
+    /// agree on.
+    fn pair(loose: f64, samples: u64, stops: bool) -> Pair {
+        let sample = |k: u64| Observation { time: k as f64, ..Observation::default() };
+        let tight =
+            Trajectory { samples: (0..samples).map(sample).collect(), ..Trajectory::default() };
+        let sizes = Sizes { mass: 1.0, length: 1.0, rate: 1.0, clearances: Vec::new() };
+        let tolerances = [loose + APART, loose].map(|exponent| 10f64.powf(-exponent));
+        let source = simulate::Error::Interrupted { time: samples as f64 };
+        Pair {
+            apart: vec![Parts::all(1e-20); samples as usize],
+            scales: Scales::of(&tight.samples, &sizes),
+            tight,
+            tolerances,
+            start: 0.0,
+            parting: None,
+            stopped: stops.then_some(Stopped { tolerance: tolerances[0], source }),
+        }
+    }
+
+    /// Runs a search over pairs of which one stops after so many samples; the exponents tried.
+    fn tried(stops: impl Fn(usize) -> Option<u64>) -> (Pair, Vec<f64>) {
+        let mut tried = Vec::new();
+        let run = |loose| {
+            let stops = stops(tried.len());
+            tried.push(loose);
+            Ok(pair(loose, stops.unwrap_or(SAMPLES), stops.is_some()))
+        };
+        let Ok(found) = search(run, 10.0, SAMPLES, 4.0) else { panic!("no run was interrupted") };
+        (found, tried)
+    }
+
+    #[test]
+    fn where_a_pair_stops_another_tolerance_is_tried_and_its_pair_taken() {
+        let (found, exponents) = tried(|k| (k == 0).then_some(2));
+        assert_eq!(exponents, [24.0, 25.0]);
+        assert!(found.stopped.is_none() && found.apart.len() == 5);
+        assert_eq!(found.tolerances, [30.0, 25.0].map(|exponent| 10f64.powf(-exponent)));
+    }
+
+    #[test]
+    fn a_pair_that_stops_before_any_sample_is_no_end_either() {
+        let (found, exponents) = tried(|k| (k < 2).then_some(0));
+        assert_eq!(exponents, [24.0, 25.0, 29.0]);
+        assert!(found.stopped.is_none() && found.apart.len() == 5);
+    }
+
+    #[test]
+    fn where_every_pair_stops_the_one_that_came_furthest_is_taken() {
+        let (found, exponents) = tried(|k| Some([2, 4, 3, 1][k]));
+        assert_eq!(exponents, [24.0, 25.0, 29.0, 36.0]);
+        assert!(found.stopped.is_some() && found.apart.len() == 4);
+        assert_eq!(found.tolerances[1], 10f64.powf(-25.0));
     }
 }

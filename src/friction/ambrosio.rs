@@ -48,7 +48,45 @@ pub struct Ambrosio<S> {
     hysteresis: S,
 }
 
+/// The numbers of the law, whatever the arithmetic of the run.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Ramp {
+    /// c_f.
+    pub coefficient: f64,
+    /// Lower edge of the ramp (m/s).
+    pub v0: f64,
+    /// Upper edge (m/s).
+    pub v1: f64,
+}
+
+/// A share c_d less than this may be that of no slip beyond v0: regions overlap.
+const NO_SHARE: f64 = 1e-4;
+
+impl Ramp {
+    /// How far (m/s) a slip is from the nearest that has this ratio F_T/F_N by the law; zero where
+    /// it has it itself, or more than there can be.
+    pub fn off(&self, slip: f64, ratio: f64) -> f64 {
+        if self.coefficient == 0.0 {
+            return 0.0;
+        }
+        let Ramp { v0, v1, .. } = *self;
+        let share = -ratio / self.coefficient;
+        // the slip in the direction against which the friction acts
+        let along = slip * share.signum();
+        match share.abs() {
+            share if share < NO_SHARE => (slip.abs() - v0 - NO_SHARE * (v1 - v0)).max(0.0),
+            share if share < 1.0 - NO_SHARE => (along - v0 - share * (v1 - v0)).abs(),
+            _ => (v1 - NO_SHARE * (v1 - v0) - along).max(0.0),
+        }
+    }
+}
+
 impl<S: Scalar> Ambrosio<S> {
+    /// Its numbers as doubles.
+    pub fn ramp(&self) -> Ramp {
+        Ramp { coefficient: self.coefficient.to_f64(), v0: self.v0.to_f64(), v1: self.v1.to_f64() }
+    }
+
     /// Friction with coefficient c_f and ramp from v0 to v1 (m/s), 0 ≤ v0 < v1.
     ///
     /// A slip that decays onto an edge of the ramp from above must not cross it again and again
@@ -185,6 +223,20 @@ mod tests {
             let met = law().edges(ORDER[at + 1]).0 + off;
             prop_assert!(law().beyond(ORDER[at + 1], false, met) != ORDER[at + 1]);
         }
+    }
+
+    #[test]
+    fn a_slip_that_has_not_the_friction_of_its_law_is_off() {
+        let ramp = law().ramp();
+        for slip in [-0.5, -1e-2, -5e-3, -1e-3, -1e-4, 0.0, 2e-4, 3e-3, 1e-2, 0.2] {
+            let (ratio, _) = law().ratio(law().region(slip, 0.0), slip);
+            assert!(ramp.off(slip, ratio) < 1e-15, "{slip}: {}", ramp.off(slip, ratio));
+        }
+        // full friction backward at a slip forward, none at a fast one, half of it where all is due
+        for (slip, ratio, off) in [(0.05, 0.1, 0.06), (0.05, 0.0, 0.049), (0.05, -0.05, 0.0445)] {
+            assert!((ramp.off(slip, ratio) - off).abs() < 1e-5, "{slip}, {ratio}");
+        }
+        assert_eq!(Ramp { coefficient: 0.0, ..ramp }.off(0.05, 0.0), 0.0);
     }
 
     #[test]

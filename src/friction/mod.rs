@@ -2,4 +2,4 @@
 
 mod ambrosio;
 
-pub use ambrosio::{Ambrosio, SlipRegion};
+pub use ambrosio::{Ambrosio, Ramp, SlipRegion};

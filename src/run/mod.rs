@@ -198,6 +198,8 @@ where
     let speed = system.scales().1.first().copied().unwrap_or(0.0);
     let names = system.model().names().clearances.clone();
     let deepest = |c: &Clearance<S>| c.maximum_penetration * c.journal_radius.to_f64();
+    let frictions = system.model().clearances().iter();
+    let frictions = frictions.map(|clearance| clearance.friction.map(|law| law.ramp())).collect();
     let allowed_depths = system.model().clearances().iter().map(deepest).collect();
     let tracker = recorder
         .keeps_revolutions()
@@ -214,7 +216,7 @@ where
         next_time: None,
         marks: Vec::new(),
         window: Window::new(clearances),
-        witness: Witness::new(names, length, speed, tolerance),
+        witness: Witness::new(names, frictions, [length, speed], tolerance),
         contacts: Contacts::default(),
         peaks: Vec::new(),
         tracker,

@@ -2,14 +2,21 @@
 //!
 //! The engines prove that they miss no event. This does not rely on it: a journal deep in the wall
 //! without a contact, a contact far from the wall, a contact that begins while journal and bearing
-//! part, or energy that comes from nowhere, end a run, whatever let them pass.
+//! part, friction that is not that of the slip, or energy that comes from nowhere, end a run,
+//! whatever let them pass.
 
-use crate::mechanism::Observation;
+use crate::friction::Ramp;
+use crate::mechanism::{ClearanceObservation, Observation};
 
 /// Depths (m) that are rounding, whatever the tolerance.
 const ROUNDING: f64 = 1e-12;
 /// What a state may be off by, in units of the tolerance times the size of the mechanism.
 const ERRORS: f64 = 1e3;
+/// What a slip may be off by, over the speed of the mechanism, however tight the tolerance, and
+/// however loose.
+const SLIP: [f64; 2] = [1e-8, 1e-2];
+/// Share of v1 that an edge lies lower on the way down, and more.
+const EDGE: f64 = 1e-5;
 /// Share of all energy seen that the balance may be off by.
 const ENERGY: f64 = 0.25;
 
@@ -57,6 +64,22 @@ pub enum Contradiction {
         /// Time (s).
         time: f64,
     },
+    /// Friction that is not that of the slip.
+    #[error(
+        "the slip in {clearance} is {slip:.3e} m/s at t = {time:e} s, off by {off:.3e} m/s from any \
+         that has the friction which acts there: an edge of the friction law was passed unseen; a \
+         smaller relative_tolerance or max_step may help"
+    )]
+    OtherSlip {
+        /// Key of the joint.
+        clearance: String,
+        /// Slip (m/s).
+        slip: f64,
+        /// Distance (m/s) from the nearest slip that has this friction.
+        off: f64,
+        /// Time (s).
+        time: f64,
+    },
     /// Energy from nowhere, or to nowhere.
     #[error(
         "the energy balance is off by {residual:.3e} J at t = {time:e} s, where the largest energy \
@@ -86,18 +109,34 @@ pub enum Contradiction {
 pub(super) struct Witness {
     /// Keys of the joints with clearance.
     names: Vec<String>,
-    /// What penetrations may be off by (m), and rates (m/s).
+    /// Their friction, where there is any.
+    frictions: Vec<Option<Ramp>>,
+    /// What penetrations may be off by (m), rates, and slips (m/s).
     depth: f64,
     rate: f64,
+    slip: f64,
     /// Largest energy or work seen (J).
     energy: f64,
 }
 
 impl Witness {
-    /// A witness of a mechanism of this length (m) and speed (m/s), solved to this tolerance.
-    pub fn new(names: Vec<String>, length: f64, speed: f64, tolerance: f64) -> Self {
+    /// A witness of a mechanism of this length (m) and speed (m/s), solved to this tolerance;
+    /// friction by clearance.
+    pub fn new(
+        names: Vec<String>,
+        frictions: Vec<Option<Ramp>>,
+        [length, speed]: [f64; 2],
+        tolerance: f64,
+    ) -> Self {
         let errors = ERRORS * tolerance;
-        Witness { names, depth: ROUNDING + errors * length, rate: errors * speed, energy: 0.0 }
+        Witness {
+            names,
+            frictions,
+            depth: ROUNDING + errors * length,
+            rate: errors * speed,
+            slip: errors.clamp(SLIP[0], SLIP[1]) * speed,
+            energy: 0.0,
+        }
     }
 
     /// Looks at the mechanism at one time.
@@ -113,8 +152,23 @@ impl Witness {
                 let clearance = self.names[k].clone();
                 return Err(Contradiction::InTheWall { clearance, depth, time });
             }
+            self.slips(k, clearance, time)?;
         }
         self.balance(seen)
+    }
+
+    /// Whether the friction of a contact is that of its slip.
+    fn slips(&self, k: usize, seen: &ClearanceObservation, time: f64) -> Result<(), Contradiction> {
+        let Some(ramp) = self.frictions[k].filter(|_| seen.normal_force > 0.0) else {
+            return Ok(());
+        };
+        let slip = seen.slip_velocity;
+        let off = ramp.off(slip, seen.tangential_force / seen.normal_force);
+        if off > self.slip + EDGE * ramp.v1 {
+            let clearance = self.names[k].clone();
+            return Err(Contradiction::OtherSlip { clearance, slip, off, time });
+        }
+        Ok(())
     }
 
     fn balance(&mut self, seen: &Observation) -> Result<(), Contradiction> {
@@ -152,7 +206,8 @@ mod tests {
     use crate::mechanism::{ClearanceObservation, EnergyObservation};
 
     fn witness() -> Witness {
-        Witness::new(vec!["A".into()], 0.1, 1.0, 1e-12)
+        let ramp = Ramp { coefficient: 0.1, v0: 1e-3, v1: 1e-2 };
+        Witness::new(vec!["A".into()], vec![Some(ramp)], [0.1, 1.0], 1e-12)
     }
 
     fn seen(penetration: f64, in_contact: bool) -> Observation {
@@ -169,6 +224,29 @@ mod tests {
         assert!(matches!(found, Err(Contradiction::InTheWall { .. })), "{found:?}");
         let found = witness().see(&seen(-1e-8, true));
         assert!(matches!(found, Err(Contradiction::OffTheWall { .. })), "{found:?}");
+    }
+
+    #[test]
+    fn friction_that_is_not_that_of_the_slip_is_seen() {
+        let at = |slip_velocity, tangential_force, normal_force| {
+            let contact = ClearanceObservation {
+                in_contact: true,
+                slip_velocity,
+                normal_force,
+                tangential_force,
+                ..ClearanceObservation::default()
+            };
+            Observation { clearances: vec![contact], ..Observation::default() }
+        };
+        for right in [at(2e-2, -10.0, 100.0), at(-5.5e-3, 5.0, 100.0), at(5e-4, 0.0, 100.0)] {
+            assert_eq!(witness().see(&right), Ok(()));
+        }
+        // where nothing presses there is no friction
+        assert_eq!(witness().see(&at(2e-2, 0.0, 0.0)), Ok(()));
+        for wrong in [at(2e-2, 10.0, 100.0), at(2e-2, -5.0, 100.0), at(2e-3, 0.0, 100.0)] {
+            let found = witness().see(&wrong);
+            assert!(matches!(found, Err(Contradiction::OtherSlip { .. })), "{found:?}");
+        }
     }
 
     #[test]
