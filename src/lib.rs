@@ -2,6 +2,7 @@
 //!
 //! The modules stand in the order of DESIGN.md: each uses those above it, none below.
 
+pub mod halt;
 pub mod scalar;
 pub mod plane;
 pub mod linear;

@@ -84,19 +84,22 @@ pub type Row<S> = (Vec<S>, S);
 /// ```text
 /// minimise |A₁ x + e₁|, then |A₂ x + e₂| among the x that do, and so on
 /// ```
-/// by reflections alone: nothing is squared, so that a condition number counts once.
+/// by reflections alone: nothing is squared, so that a condition number counts once. Zeros are
+/// passed over: what mechanisms of many bodies ask for is mostly zeros.
 #[derive(Debug, Clone)]
 pub struct Cascade<S> {
     x: Vec<S>,
-    /// Orthonormal directions that are still free.
+    /// Components of the orthonormal directions that are still free, by unknown.
     free: Vec<Vec<S>>,
+    /// How many these are.
+    left: usize,
 }
 
 impl<S: Scalar> Cascade<S> {
     /// A cascade over n unknowns, all of them free and zero.
     pub fn new(n: usize) -> Self {
         let unit = |k: usize| (0..n).map(|i| S::from_f64(f64::from(u8::from(i == k)))).collect();
-        Cascade { x: vec![S::zero(); n], free: (0..n).map(unit).collect() }
+        Cascade { x: vec![S::zero(); n], free: (0..n).map(unit).collect(), left: n }
     }
 
     /// The unknowns as they are now.
@@ -110,8 +113,7 @@ impl<S: Scalar> Cascade<S> {
     ///
     /// Returns the condition number: the largest row over what the last direction was seen with.
     pub fn minimise(&mut self, rows: &[Row<S>], bend: Option<&[S]>, least: f64) -> f64 {
-        let mut along: Vec<Vec<S>> =
-            rows.iter().map(|(a, _)| self.free.iter().map(|z| dot(a, z)).collect()).collect();
+        let mut along: Vec<Vec<S>> = rows.iter().map(|(a, _)| self.along(a)).collect();
         let mut right: Vec<S> = rows.iter().map(|(a, e)| -(*e + dot(a, &self.x))).collect();
         let size = rows.iter().map(|(a, _)| dot(a, a).to_f64().sqrt()).fold(0.0, f64::max);
         let (rank, smallest) = self.turn(&mut along, &mut right, least * size);
@@ -123,22 +125,34 @@ impl<S: Scalar> Cascade<S> {
             self.straighten(&along, &mut right[..rank], bend);
         }
         solve_upper(&along, &mut right[..rank]);
-        for (z, w) in self.free.drain(..rank).zip(&right) {
-            self.x.iter_mut().zip(z).for_each(|(x, z)| *x += *w * z);
+        for (x, free) in self.x.iter_mut().zip(&mut self.free) {
+            free.drain(..rank).zip(&right).for_each(|(z, w)| *x += *w * z);
         }
+        self.left -= rank;
         size / smallest
+    }
+
+    /// The components of a row along the free directions.
+    fn along(&self, row: &[S]) -> Vec<S> {
+        let mut along = vec![S::zero(); self.left];
+        for (a, free) in row.iter().zip(&self.free).filter(|(a, _)| is_something(**a)) {
+            along.iter_mut().zip(free).for_each(|(sum, z)| *sum += *a * *z);
+        }
+        along
     }
 
     /// Turns the free directions so that the first of them are those the rows see, the largest
     /// row first. Returns their number, and what the last was seen with.
     fn turn(&mut self, along: &mut [Vec<S>], right: &mut [S], least: f64) -> (usize, f64) {
         let mut smallest = f64::INFINITY;
-        let most = along.len().min(self.free.len());
+        let most = along.len().min(self.left);
+        // squares of what is left of each row
+        let tail = |row: &Vec<S>, j: usize| dot(&row[j..], &row[j..]);
+        let mut tails: Vec<S> = along.iter().map(|row| tail(row, 0)).collect();
         for j in 0..most {
-            let tail = |row: &Vec<S>| dot(&row[j..], &row[j..]);
-            let pivot = (j..along.len())
-                .fold(j, |best, i| if tail(&along[i]) > tail(&along[best]) { i } else { best });
-            let square = tail(&along[pivot]);
+            let pivot =
+                (j..along.len()).fold(j, |best, i| if tails[i] > tails[best] { i } else { best });
+            let square = tails[pivot];
             let seen = square.to_f64().sqrt();
             if !(square > S::zero()) || seen <= least {
                 return (j, smallest);
@@ -146,12 +160,16 @@ impl<S: Scalar> Cascade<S> {
             smallest = seen;
             along.swap(j, pivot);
             right.swap(j, pivot);
+            tails.swap(j, pivot);
             let Some(mirror) = Mirror::new(along[j][j..].to_vec()) else { return (j, smallest) };
-            along.iter_mut().for_each(|row| mirror.turn(&mut row[j..]));
-            for i in 0..self.x.len() {
-                let mut across: Vec<S> = self.free[j..].iter().map(|z| z[i]).collect();
-                mirror.turn(&mut across);
-                self.free[j..].iter_mut().zip(across).for_each(|(z, turned)| z[i] = turned);
+            for (i, row) in along.iter_mut().enumerate() {
+                let turned = mirror.turn(&mut row[j..]);
+                if i > j && (turned || is_something(row[j])) {
+                    tails[i] = tail(row, j + 1);
+                }
+            }
+            for free in &mut self.free {
+                mirror.turn(&mut free[j..]);
             }
         }
         (most, smallest)
@@ -161,7 +179,8 @@ impl<S: Scalar> Cascade<S> {
     /// D along the directions seen.
     fn straighten(&self, r: &[Vec<S>], right: &mut [S], bend: &[S]) {
         let n = right.len();
-        let seen = &self.free[..n];
+        let seen: Vec<Vec<S>> =
+            (0..n).map(|k| self.free.iter().map(|free| free[k]).collect()).collect();
         let bent = |a: &Vec<S>, b: &Vec<S>| {
             let product = a.iter().zip(b).zip(bend);
             product.fold(S::zero(), |sum, ((a, b), d)| sum + *a * *b * *d)
@@ -188,7 +207,8 @@ impl<S: Scalar> Cascade<S> {
 
 /// The reflection that takes a vector onto its first component.
 struct Mirror<S> {
-    v: Vec<S>,
+    /// Places and components of v that are not zero, the first place first.
+    v: Vec<(usize, S)>,
     /// 2/|v|².
     weight: S,
 }
@@ -204,27 +224,46 @@ impl<S: Scalar> Mirror<S> {
         let first = v.first_mut()?;
         *first += if *first < S::zero() { -length } else { length };
         let weight = S::from_f64(2.0) / dot(&v, &v);
+        let v = v.into_iter().enumerate().filter(|(_, v)| is_something(*v)).collect();
         Some(Mirror { v, weight })
     }
 
-    fn turn(&self, x: &mut [S]) {
-        let by = self.weight * dot(&self.v, x);
-        x.iter_mut().zip(&self.v).for_each(|(x, v)| *x += -(by * *v));
+    /// Turns a vector; says whether that changes it.
+    fn turn(&self, x: &mut [S]) -> bool {
+        let seen = self.v.iter().fold(S::zero(), |sum, (k, v)| sum + *v * x[*k]);
+        if !is_something(seen) {
+            return false;
+        }
+        let by = self.weight * seen;
+        self.v.iter().for_each(|(k, v)| x[*k] += -(by * *v));
+        true
     }
 }
 
 /// Makes rows upper triangular in their first n columns, the right side along with them.
 fn triangulate<S: Scalar>(rows: &mut [Vec<S>], right: &mut [S], n: usize) {
+    let mut seen = vec![S::zero(); n];
     for j in 0..n {
-        let column = |rows: &[Vec<S>], c: usize| rows[j..].iter().map(|row| row[c]).collect();
-        let Some(mirror) = Mirror::new(column(rows, j)) else { continue };
-        for c in j..n {
-            let mut entries: Vec<S> = column(rows, c);
-            mirror.turn(&mut entries);
-            rows[j..].iter_mut().zip(entries).for_each(|(row, entry)| row[c] = entry);
+        let column = rows[j..].iter().map(|row| row[j]).collect();
+        let Some(mirror) = Mirror::new(column) else { continue };
+        // the columns side by side, each as it would be turned alone
+        seen.fill(S::zero());
+        for (k, v) in &mirror.v {
+            let row = &rows[j + k][j..n];
+            seen[j..].iter_mut().zip(row).for_each(|(sum, entry)| *sum += *v * *entry);
+        }
+        for (k, v) in &mirror.v {
+            let row = &mut rows[j + k][j..n];
+            let turn = |(entry, seen): (&mut S, &S)| *entry += -(mirror.weight * *seen * *v);
+            row.iter_mut().zip(&seen[j..]).for_each(turn);
         }
         mirror.turn(&mut right[j..]);
     }
+}
+
+/// Whether a number is more than an exact zero: its value, or a derivative that it carries.
+fn is_something<S: Scalar>(x: S) -> bool {
+    S::CARRIES_DERIVATIVE || x != S::zero()
 }
 
 /// Solves R x = b in place; R stands above the diagonal of the first rows.

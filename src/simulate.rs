@@ -4,8 +4,8 @@ use crate::case::{self, Case, Changes, EngineName, NormName, Precision, Sampling
 use crate::dae::{Count, Engine};
 use crate::engine::explicit::{self, Explicit};
 use crate::engine::ida::{self, Ida};
-use crate::mechanism::Mechanism;
-use crate::model::Model;
+use crate::mechanism::{BodyObservation, Mechanism};
+use crate::model::{Complaint, Complaints, KeyPath, Model};
 use crate::record::{Attribute, Header};
 use crate::run::{self, Recorder, RulingCounts, Schedule, Watcher};
 use crate::scalar::{Dual, F256, Scalar};
@@ -74,7 +74,12 @@ impl<'a> Simulation<'a> {
             Sampling::Uniform => schedule,
             Sampling::Adaptive => schedule.adaptive(),
         };
-        Ok(Simulation { case, mechanism: assemble(case)?, schedule })
+        let mechanism = assemble(case)?;
+        let complaints = what_no_run_begins_with(&mechanism);
+        if !complaints.is_empty() {
+            return Err(case.reject(complaints));
+        }
+        Ok(Simulation { case, mechanism, schedule })
     }
 
     /// The assembled mechanism.
@@ -124,6 +129,44 @@ impl<'a> Simulation<'a> {
             },
         }
     }
+}
+
+/// What of an assembled start no run can begin with: journals beyond all that their contact law can
+/// mean, and what is no number.
+fn what_no_run_begins_with(mechanism: &Mechanism<f64>) -> Vec<Complaint> {
+    let integrals = &mechanism.start().integrals;
+    let start = mechanism.observe(0.0, integrals);
+    let mut complaints = Complaints::default();
+    let model = mechanism.model();
+    for (k, clearance) in model.clearances().iter().enumerate() {
+        let depth = start.clearances[k].penetration;
+        let allowed = clearance.maximum_penetration * clearance.journal_radius;
+        if !(depth <= allowed) {
+            let key = KeyPath::new(["joints", &model.names().clearances[k], "clearance"]);
+            let law = format!("its contact law means nothing beyond {allowed:.4e} m");
+            let hint = "the start puts the journal there";
+            complaints.add(key, format!("starts {depth:.4e} m deep in the bearing: {law}; {hint}"));
+        }
+    }
+    let forces =
+        start.joints.iter().flat_map(|joint| [joint.force[0], joint.force[1], joint.moment]);
+    let motions = start.bodies.iter().flat_map(|body| {
+        let BodyObservation { position: [x, y], velocity: [u, v], acceleration: [a, b], .. } =
+            *body;
+        [x, y, u, v, a, b, body.angle, body.angular_velocity, body.angular_acceleration]
+    });
+    let numbers = [
+        ("positions, velocities and accelerations", motions.collect::<Vec<_>>()),
+        ("forces", forces.chain(start.drive_torques.iter().copied()).collect()),
+        ("energies", vec![start.energy.kinetic, start.energy.potential, start.energy.elastic]),
+    ];
+    for (what, numbers) in numbers {
+        if complaints.is_empty() && numbers.iter().any(|number| !number.is_finite()) {
+            let reason = "a number of the case is far too large or too small";
+            complaints.add(KeyPath::new(["start"]), format!("{what} are not finite: {reason}"));
+        }
+    }
+    complaints.into_vec()
 }
 
 /// Statistics and outcome of a simulation.

@@ -1,6 +1,7 @@
 //! Why a case file gives no case.
 
 use super::Located;
+use crate::model::MOST_TOLD;
 use std::fmt::Write;
 use std::io;
 use std::path::PathBuf;
@@ -53,8 +54,14 @@ pub enum Error {
 }
 
 fn one_a_line(complaints: &[Located]) -> String {
-    complaints.iter().fold(String::new(), |mut lines, complaint| {
-        let _ = write!(lines, "\n  {complaint}"); // writing to a string cannot fail
+    // writing to a string cannot fail
+    let told = complaints.iter().take(MOST_TOLD);
+    let mut lines = told.fold(String::new(), |mut lines, complaint| {
+        let _ = write!(lines, "\n  {complaint}");
         lines
-    })
+    });
+    if complaints.len() > MOST_TOLD {
+        let _ = write!(lines, "\n  and {} more", complaints.len() - MOST_TOLD);
+    }
+    lines
 }

@@ -14,6 +14,9 @@ const SMALLEST_RELATIVE_TOLERANCE: f64 = 1e-15;
 /// spare.
 const SMALLEST_REFERENCE_TOLERANCE: f64 = 1e-64;
 
+/// Largest tolerance of the explicit engine, in either arithmetic.
+const LARGEST_EXPLICIT_TOLERANCE: f64 = 1e-2;
+
 /// How a case is run: keys `run` and `solver`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Plan {
@@ -135,8 +138,13 @@ impl Plan {
         let mut complaints = Complaints::default();
         self.check_samples(&mut complaints);
         self.solver.check_tolerances(&mut complaints);
-        self.solver.check_steps(&mut complaints);
+        self.solver.check_steps(&mut complaints, self.first_sample());
         complaints.into_vec()
+    }
+
+    /// Time of the first sample behind the start (s).
+    fn first_sample(&self) -> f64 {
+        self.sample_interval.to_f64().min(self.duration.to_f64())
     }
 
     fn check_samples(&self, complaints: &mut Complaints) {
@@ -183,6 +191,14 @@ impl SolverPlan {
         };
         require("relative_tolerance", self.relative_tolerance, SMALLEST_RELATIVE_TOLERANCE);
         require("reference_tolerance", self.reference_tolerance, SMALLEST_REFERENCE_TOLERANCE);
+        let (name, used) = match self.precision {
+            Precision::Double => ("relative_tolerance", self.relative_tolerance),
+            Precision::Octuple => ("reference_tolerance", self.reference_tolerance),
+        };
+        if self.engine == EngineName::Explicit && used > LARGEST_EXPLICIT_TOLERANCE && used < 1.0 {
+            let range = format!("at most {LARGEST_EXPLICIT_TOLERANCE:e} for engine \"explicit\"");
+            complaints.add(solver.key(name), format!("must be {range}, is {used}"));
+        }
         if let AbsoluteTolerance::Scalar(tolerance) = self.absolute_tolerance {
             let (key, range) = (solver.key("absolute_tolerance"), "greater than 0 and less than 1");
             let holds = |x: f64| x > 0.0 && x < 1.0;
@@ -190,13 +206,20 @@ impl SolverPlan {
         }
     }
 
-    fn check_steps(&self, complaints: &mut Complaints) {
+    /// `first` is the time of the first sample (s): steps that it swallows lead nowhere.
+    fn check_steps(&self, complaints: &mut Complaints, first: f64) {
         let solver = KeyPath::new(["solver"]);
-        let initial = Decimal::from(self.initial_step);
-        complaints.require_positive(solver.key("initial_step"), &initial, "s");
-        if self.max_step != f64::INFINITY {
-            let longest = Decimal::from(self.max_step);
-            complaints.require_positive(solver.key("max_step"), &longest, "s");
+        for (name, step) in [("initial_step", self.initial_step), ("max_step", self.max_step)] {
+            let (key, told) = (solver.key(name), Decimal::from(step));
+            let endless = name == "max_step" && step == f64::INFINITY;
+            if !endless
+                && complaints.require_positive(key.clone(), &told, "s")
+                && first + step == first
+            {
+                let reason = "added to that time it changes nothing";
+                let rule = format!("the first sample is at {first:e} s, and {reason}");
+                complaints.add(key, format!("is too small (s), {told}: {rule}"));
+            }
         }
     }
 }

@@ -48,6 +48,8 @@ fn line_at(text: &[u8], position: usize) -> usize {
 pub(super) struct Source {
     path: PathBuf,
     file: Document<String>,
+    /// Where each line begins.
+    lines: Vec<usize>,
     overrides: Vec<KeyPath>,
 }
 
@@ -56,7 +58,9 @@ impl Source {
     pub fn new(path: &Path, text: &str, overrides: &[Override]) -> Result<Source, Error> {
         let file = Document::parse(text.to_owned()).map_err(|error| syntax(path, text, &error))?;
         let overrides = overrides.iter().map(|set| set.key().clone()).collect();
-        Ok(Source { path: path.to_owned(), file, overrides })
+        let ends = text.bytes().enumerate().filter(|(_, byte)| *byte == b'\n');
+        let lines = std::iter::once(0).chain(ends.map(|(end, _)| end + 1)).collect();
+        Ok(Source { path: path.to_owned(), file, lines, overrides })
     }
 
     /// The error that tells these complaints, each with its place, in the order of the file.
@@ -94,7 +98,7 @@ impl Source {
         }
         let (key, item) = table.get_key_value(last)?;
         let span = key.span().or_else(|| item.span())?;
-        Some(line_at(self.file.raw().as_bytes(), span.start))
+        Some(self.lines.partition_point(|begin| *begin <= span.start))
     }
 }
 

@@ -1,8 +1,11 @@
 //! Reads the keys of one TOML table, and notes what is missing, of the wrong type or unknown.
 
 use super::DefaultTaken;
-use crate::model::{Complaint, KeyPath, OfMaterials, did_you_mean, in_brackets};
+use crate::model::{
+    Complaint, KeyPath, MOST_TOLD, OfMaterials, did_you_mean, in_brackets, shortened,
+};
 use crate::scalar::Decimal;
+use std::collections::HashSet;
 use toml_edit::{Item, Table, TableLike, Value};
 
 /// What reading a case brought to light.
@@ -23,11 +26,12 @@ impl Findings {
     /// for a value: a check's complaint about a key that has one already, or about anything below
     /// it, says nothing new and is dropped.
     pub fn add_checks(&mut self, checks: Vec<Complaint>) {
-        let read: Vec<KeyPath> = self.complaints.iter().map(|known| known.key.clone()).collect();
-        let known = |key: &KeyPath| {
-            read.iter().chain(&self.unchecked).any(|above| key.keys().starts_with(above.keys()))
-        };
-        let new = checks.into_iter().filter(|check| !known(&check.key));
+        let read = self.complaints.iter().map(|known| known.key.keys());
+        let read: HashSet<&[String]> =
+            read.chain(self.unchecked.iter().map(KeyPath::keys)).collect();
+        let known = |key: &[String]| (0..=key.len()).any(|depth| read.contains(&key[..depth]));
+        let new: Vec<Complaint> =
+            checks.into_iter().filter(|check| !known(check.key.keys())).collect();
         self.complaints.extend(new);
     }
 
@@ -177,7 +181,10 @@ impl<'d> TableReader<'d, '_> {
     fn complain_of_unknown_keys(&mut self) {
         let Some(table) = self.table.filter(|_| !self.any_key) else { return };
         for (key, _) in table.iter().filter(|(key, _)| !self.asked.contains(key)) {
-            let known = nearest_or_all(key, &self.asked);
+            let known = match self.findings.complaints.len() < MOST_TOLD {
+                true => nearest_or_all(key, &self.asked),
+                false => String::new(),
+            };
             self.findings.add(self.path.key(key), format!("unknown key{known}"));
         }
     }
@@ -265,6 +272,7 @@ impl<'d> TableReader<'d, '_> {
         let found = choices.iter().find(|(known, _)| *known == word);
         if found.is_none() {
             let near = did_you_mean(word, words.iter().copied());
+            let word = shortened(word);
             self.complain(key, format!("must be {}, is {word:?}{near}", one_of(&words)));
         }
         found.map(|(_, value)| value.clone())
@@ -296,7 +304,7 @@ impl<'d> TableReader<'d, '_> {
         let found = choices.iter().find(|(known, _)| Some(*known) == word);
         if found.is_none() {
             let near = word.map_or(String::new(), |word| did_you_mean(word, words));
-            let found = word.map_or(describe(item), |word| format!("{word:?}"));
+            let found = word.map_or(describe(item), |word| format!("{:?}", shortened(word)));
             self.complain(key, format!("must be {expected}, is {found}{near}"));
         }
         found.map(|(_, value)| value.clone())

@@ -54,11 +54,13 @@ pub(super) fn certify(arguments: &Arguments) -> Result<(), Failure> {
     let case = read(arguments)?;
     let simulation = Simulation::new(&case).map_err(Failure::input)?;
     let header = simulate::header(&case, simulation.mechanism(), utc(SystemTime::now()));
+    let signals = Signals::new().map_err(Failure::output)?;
     if let Some(output) = &arguments.output {
         // an output that cannot be written is told before the work, not after it
-        drop(Writer::create(output, header.clone(), arguments.force).map_err(Failure::output)?);
+        let writer =
+            Writer::create_from(output, header.clone(), arguments.force, &inputs(arguments));
+        drop(writer.map_err(Failure::output)?);
     }
-    let signals = Signals::new().map_err(Failure::output)?;
     let digits = arguments.digits.unwrap_or(DIGITS);
     let reference = reference(arguments, &case, simulation.schedule(), digits, &signals)?;
     let names = simulation.mechanism().model().names().clone();
@@ -69,10 +71,10 @@ pub(super) fn certify(arguments: &Arguments) -> Result<(), Failure> {
     let told =
         Told { case: &case.name, case_sha256: &case_sha256, names: &names, digits, revolution };
     if let Some(output) = &arguments.output {
-        write(&certificate, output, header, arguments.force)?;
+        write(&certificate, output, header, arguments)?;
     }
     match arguments.json {
-        true => super::print(format_args!("{}\n", certificate.json(&told)))?,
+        true => super::print_json(format_args!("{}\n", certificate.json(&told)))?,
         false => super::print(format_args!("{}\n{}", case.name, certificate.words(&told)))?,
     }
     if arguments.digits.is_some() && !certificate.reference_holds_to_the_end(digits) {
@@ -148,15 +150,22 @@ fn progress_bar(quiet: bool) -> ProgressBar {
     bar
 }
 
+/// The files that a certificate is made from.
+fn inputs(arguments: &Arguments) -> Vec<&Path> {
+    let case = std::iter::once(arguments.case.path.as_path());
+    case.chain(arguments.reference.as_deref()).collect()
+}
+
 /// Writes the reference with all that the certificate says.
 fn write(
     certificate: &Certificate,
     output: &Path,
     mut header: crate::record::Header,
-    force: bool,
+    arguments: &Arguments,
 ) -> Result<(), Failure> {
     header.attributes.extend(certificate.reference.attributes());
-    let mut writer = Writer::create(output, header, force).map_err(Failure::output)?;
+    let writer = Writer::create_from(output, header, arguments.force, &inputs(arguments));
+    let mut writer = writer.map_err(Failure::output)?;
     let trajectory = &certificate.reference.trajectory;
     let mut record = || {
         trajectory.samples.iter().try_for_each(|sample| writer.sample(sample))?;

@@ -6,7 +6,7 @@ use crate::case::{AbsoluteTolerance, Case, EngineName, NormName, Precision, Solv
 use crate::contact;
 use crate::dae::System;
 use crate::mechanism::{Mechanism, Observation};
-use crate::model::KeyPath;
+use crate::model::{KeyPath, one_line};
 use crate::post::table;
 use crate::simulate::Simulation;
 use serde_json::{Map, Value, json};
@@ -33,7 +33,7 @@ pub(super) fn check(arguments: &Arguments) -> Result<(), Failure> {
     let start = mechanism.observe(0.0, &mechanism.start().integrals);
     let checked = Checked { case: &case, simulation: &simulation, start, turn, touches, notes };
     match arguments.json {
-        true => super::print(format_args!("{:#}\n", checked.json())),
+        true => super::print_json(format_args!("{:#}\n", checked.json())),
         false => super::print(checked),
     }
 }
@@ -52,7 +52,7 @@ struct Checked<'a> {
 impl Display for Checked<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mechanism = self.simulation.mechanism();
-        let title = &self.case.title;
+        let title = one_line(&self.case.title);
         let colon = if title.is_empty() { "" } else { ": " };
         writeln!(f, "{}{colon}{title}", self.case.name)?;
         mechanism_lines(mechanism, f)?;

@@ -78,7 +78,7 @@ pub(super) fn compare(arguments: &Arguments) -> Result<(), Failure> {
     let comparison = compared.map_err(|error| failure(error, &signals))?;
     let requirement = arguments.requirement();
     match arguments.json {
-        true => super::print(format_args!("{}\n", comparison.json(&requirement))),
+        true => super::print_json(format_args!("{}\n", comparison.json(&requirement))),
         false => super::print(&comparison),
     }?;
     if let Some(shortfall) = comparison.shortfall(&requirement) {

@@ -1,6 +1,6 @@
 //! `freeplay export FILE --to FORMAT -o OUT`
 
-use super::Failure;
+use super::{Failure, signals};
 use crate::export::{self, Error, Format, TableName};
 use crate::record::ResultFile;
 use clap::ValueEnum;
@@ -49,6 +49,7 @@ enum Table {
 
 /// Writes a result file in another format.
 pub(super) fn export(arguments: &Arguments) -> Result<(), Failure> {
+    signals::end_at_once()?;
     let file = ResultFile::open(&arguments.file).map_err(Failure::input)?;
     let (format, things) = match arguments.to {
         To::Csv => (Format::Csv, "columns"),

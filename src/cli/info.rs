@@ -19,7 +19,7 @@ pub(super) fn info(arguments: &Arguments) -> Result<(), Failure> {
     let overview = ResultFile::open(&arguments.file).and_then(|file| Overview::of(&file));
     let overview = overview.map_err(Failure::input)?;
     match arguments.json {
-        true => super::print(format_args!("{:#}\n", overview.to_json())),
+        true => super::print_json(format_args!("{:#}\n", overview.to_json())),
         false => super::print(overview),
     }
 }

@@ -1,6 +1,6 @@
 //! `freeplay man -o DIR`
 
-use super::{CommandLine, Failure};
+use super::{CommandLine, Failure, signals};
 use crate::record::{self, Draft};
 use clap::{Command, CommandFactory};
 use clap_mangen::Man;
@@ -31,6 +31,7 @@ enum ManError {
 
 /// Writes a manual page of the program, and one of each command.
 pub(super) fn man(arguments: &Arguments) -> Result<(), Failure> {
+    signals::end_at_once()?;
     let pages = write(arguments).map_err(Failure::output)?;
     let folder = arguments.output.display();
     super::print(format_args!("{folder}: {pages} pages; man -l {folder}/freeplay.1 shows one\n"))

@@ -11,6 +11,7 @@ mod new;
 mod plot;
 mod report;
 mod run;
+mod shown;
 mod signals;
 mod summary;
 mod version;
@@ -114,10 +115,10 @@ impl Failure {
 
     /// Tells the error and its causes on stderr.
     fn tell(&self) {
-        say(format_args!("error: {}", self.error));
+        say(shown::message(&format!("error: {}", self.error)));
         let mut cause = self.error.source();
         while let Some(error) = cause {
-            say(format_args!("  caused by: {error}"));
+            say(shown::message(&format!("  caused by: {error}")));
             cause = error.source();
         }
         if let Some(rest) = &self.rest {
@@ -144,8 +145,17 @@ struct NotPrinted(#[source] io::Error);
 
 /// Prints a result on stdout; a reader that has gone away is no error.
 fn print(result: impl std::fmt::Display) -> Result<(), Failure> {
+    print_shown(&shown::text(&result.to_string()))
+}
+
+/// Prints JSON on stdout.
+fn print_json(result: impl std::fmt::Display) -> Result<(), Failure> {
+    print_shown(&shown::json(&result.to_string()))
+}
+
+fn print_shown(result: &str) -> Result<(), Failure> {
     let mut stdout = io::stdout();
-    match write!(stdout, "{result}").and_then(|()| stdout.flush()) {
+    match stdout.write_all(result.as_bytes()).and_then(|()| stdout.flush()) {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
             Err(Failure::output(NotPrinted(error)))
         }
@@ -155,11 +165,13 @@ fn print(result: impl std::fmt::Display) -> Result<(), Failure> {
 
 /// Says something on stderr; nobody need listen.
 fn say(words: impl std::fmt::Display) {
-    let _ = writeln!(io::stderr(), "{words}");
+    let _ = writeln!(io::stderr(), "{}", shown::text(&words.to_string()));
 }
 
 /// Parses the command line and does what it says.
 pub fn main() -> ExitCode {
+    signals::let_long_writes_fail();
+    signals::end_clearly_without_memory();
     let done = match CommandLine::parse().command {
         Command::New(arguments) => new::new(&arguments),
         Command::Run(arguments) => run::run(&arguments),
@@ -178,7 +190,9 @@ pub fn main() -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
             failure.tell();
-            ExitCode::from(failure.code)
+            // what fails once a signal has come fails for that, but for an output that is lost
+            let code = signals::exit_code().filter(|_| failure.code != 3);
+            ExitCode::from(code.unwrap_or(failure.code))
         }
     }
 }

@@ -1,6 +1,6 @@
 //! `freeplay new KIND`
 
-use super::Failure;
+use super::{Failure, signals};
 use crate::record::{self, Draft};
 use clap::ValueEnum;
 use std::path::PathBuf;
@@ -52,6 +52,7 @@ impl Kind {
 
 /// Writes a commented case file to start from.
 pub(super) fn new(arguments: &Arguments) -> Result<(), Failure> {
+    signals::end_at_once()?;
     let (name, text) = arguments.kind.file();
     let path = arguments.output.clone().unwrap_or_else(|| name.into());
     let write = || -> Result<(), record::Error> {

@@ -1,6 +1,6 @@
 //! `freeplay plot FILE… -o DIR`
 
-use super::Failure;
+use super::{Failure, signals};
 use crate::figure::{self, Figure, Format, Options, Over};
 use crate::model::did_you_mean;
 use crate::record::{self, Draft, ResultFile};
@@ -117,12 +117,13 @@ enum PlotError {
 
 /// Draws the figures of result files.
 pub(super) fn plot(arguments: &Arguments) -> Result<(), Failure> {
+    signals::end_at_once()?;
     let files = arguments.files.iter().map(|path| ResultFile::open(path));
     let files = files.collect::<Result<Vec<_>, _>>().map_err(Failure::input)?;
     let figures = figure::draw(files, &options(arguments)).map_err(Failure::input)?;
     let figures = chosen(figures, &arguments.only).map_err(Failure::input)?;
     let formats = formats(arguments);
-    let written = write(&figures, &formats, &arguments.output, arguments.force);
+    let written = write(&figures, &formats, arguments);
     let written = written.map_err(Failure::output)?;
     let (count, folder) = (figures.len(), arguments.output.display());
     super::print(format_args!("{folder}: {count} figures, {written} files\n"))
@@ -173,9 +174,10 @@ fn formats(arguments: &Arguments) -> Vec<Format> {
 fn write(
     figures: &[Figure],
     formats: &[Format],
-    folder: &Path,
-    force: bool,
+    arguments: &Arguments,
 ) -> Result<usize, PlotError> {
+    let folder = &arguments.output;
+    let inputs: Vec<&Path> = arguments.files.iter().map(PathBuf::as_path).collect();
     fs::create_dir_all(folder).map_err(|source| {
         let path = folder.to_owned();
         PlotError::Folder { path, source }
@@ -188,8 +190,8 @@ fn write(
         .flat_map(|figure| formats.iter().map(move |format| (figure, *format)))
         .map(|(figure, format)| (figure, format, path(figure, format)))
         .collect();
-    let drafts: Vec<Draft> =
-        files.iter().map(|(_, _, path)| Draft::create(path, force)).collect::<Result<_, _>>()?;
+    let draft = |(_, _, path): &(_, _, PathBuf)| Draft::create_from(path, arguments.force, &inputs);
+    let drafts: Vec<Draft> = files.iter().map(draft).collect::<Result<_, _>>()?;
     for ((figure, format, path), draft) in files.iter().zip(drafts) {
         let encoded = figure.encode(*format);
         let bytes = encoded.map_err(|source| PlotError::Encode { path: path.clone(), source })?;

@@ -1,6 +1,6 @@
 //! `freeplay report FILE…`
 
-use super::Failure;
+use super::{Failure, signals};
 use crate::record::ResultFile;
 use crate::report::Report;
 use std::path::PathBuf;
@@ -21,6 +21,7 @@ pub struct Arguments {
 
 /// Writes a page on one or several runs.
 pub(super) fn report(arguments: &Arguments) -> Result<(), Failure> {
+    signals::end_at_once()?;
     let files: Vec<ResultFile> = arguments
         .files
         .iter()

@@ -58,14 +58,16 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let output = arguments.output.clone().unwrap_or_else(|| format!("{}.h5", case.name).into());
     let simulation = Simulation::new(&case).map_err(Failure::input)?;
     let header = simulate::header(&case, simulation.mechanism(), utc(SystemTime::now()));
-    let writer = Writer::create(&output, header, arguments.force).map_err(Failure::output)?;
     let signals = Signals::new().map_err(Failure::output)?;
+    let inputs = [arguments.case.path.as_path()];
+    let writer = Writer::create_from(&output, header, arguments.force, &inputs);
+    let writer = writer.map_err(Failure::output)?;
     let tangent = Carried::of(arguments, &case, &simulation);
     let checked = arguments.check.then_some(&case);
     let told = simulate_into(writer, simulation, &signals, arguments.quiet, tangent, checked)?;
     let seconds = begun.elapsed().as_secs_f64();
     match arguments.json {
-        true => super::print(format_args!("{:#}\n", told.json(&case, seconds)?))?,
+        true => super::print_json(format_args!("{:#}\n", told.json(&case, seconds)?))?,
         false => super::print(told.words(&case, seconds)?)?,
     }
     told.check.map_or(Ok(()), confirmed)

@@ -31,7 +31,7 @@ pub(super) fn summary(arguments: &Arguments) -> Result<(), Failure> {
         ));
     }
     match arguments.json {
-        true => super::print(format_args!("{:#}\n", summary.to_json())),
+        true => super::print_json(format_args!("{:#}\n", summary.to_json())),
         false => super::print(&summary),
     }
 }

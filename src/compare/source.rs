@@ -6,6 +6,7 @@ use super::mapping::Mapping;
 use super::quantity::Column;
 use super::unit::Unit;
 use crate::case::{Case, Changes};
+use crate::model::one_line;
 use crate::record::{self, ResultFile};
 use std::path::Path;
 
@@ -54,14 +55,14 @@ impl Source {
         match self {
             Source::Foreign(table) => table.format.name().to_owned(),
             Source::Result(file) => {
-                let text = |name| file.text(name).unwrap_or("?");
+                let text = |name| one_line(file.text(name).unwrap_or("?"));
                 let mut words = format!("freeplay result of case {}", text("case_name"));
                 match file.number("reference_tolerance_tight") {
                     Some(tolerance) => {
                         words += &format!(", in 71 digits, tolerance {tolerance:e}");
                     }
                     None => {
-                        let engine = file.text("engine").unwrap_or("?");
+                        let engine = text("engine");
                         let tolerance = file.number("relative_tolerance").unwrap_or(f64::NAN);
                         words += &format!(", engine {engine}, relative tolerance {tolerance:e}");
                     }

@@ -22,6 +22,10 @@ pub(super) fn write(file: &ResultFile, columns: &Columns, path: &Path) -> Result
                 field.clear();
                 let value = values[row];
                 let written = match (column.word(value), column.values) {
+                    // a spreadsheet would reckon with what begins so, a quote makes it text
+                    (Some(word), _) if word.starts_with(['=', '+', '-', '@']) => {
+                        write!(field, "'{word}")
+                    }
                     (Some(word), _) => field.write_str(word),
                     (None, Values::Real) => write!(field, "{value:?}"),
                     (None, _) => write!(field, "{value}"),

@@ -82,23 +82,22 @@ pub fn export(
 ) -> Result<Written, Error> {
     let columns = Columns::of(file, table);
     match format {
-        Format::Csv => publish(output, force, &columns, |path| csv::write(file, &columns, path)),
-        Format::Parquet => {
-            publish(output, force, &columns, |path| parquet::write(file, &columns, path))
-        }
+        Format::Csv => publish(file, output, force, &columns, csv::write),
+        Format::Parquet => publish(file, output, force, &columns, parquet::write),
         Format::OpenMbv => openmbv::write(file, output, force),
     }
 }
 
 /// Writes a table under a temporary name, then publishes it.
 fn publish(
+    file: &ResultFile,
     output: &Path,
     force: bool,
     columns: &Columns,
-    write: impl FnOnce(&Path) -> Result<(), WriteError>,
+    write: impl FnOnce(&ResultFile, &Columns, &Path) -> Result<(), WriteError>,
 ) -> Result<Written, Error> {
-    let draft = Draft::create(output, force).map_err(Error::Output)?;
-    write(draft.temporary()).map_err(|error| error.at(output))?;
+    let draft = Draft::create_from(output, force, &[file.path()]).map_err(Error::Output)?;
+    write(file, columns, draft.temporary()).map_err(|error| error.at(output))?;
     let path = draft.publish().map_err(Error::Output)?;
     Ok(Written { paths: vec![path], rows: columns.rows, columns: columns.columns.len() })
 }

@@ -5,6 +5,7 @@ use super::layout::Role;
 use crate::clearance::{Bodies, Clearance, Gap, Mode};
 use crate::contact::Penetration;
 use crate::dae::{Course, Fault, State, System, Watch};
+use crate::halt::{self, Halted};
 use crate::linear::Singular;
 use crate::plane::Vector;
 use crate::scalar::Scalar;
@@ -58,6 +59,9 @@ impl<S: Scalar> System<S> for Mechanism<S> {
         state: State<'_, S>,
         roots: &[Option<S>],
     ) -> Result<(), Fault> {
+        if halt::is_asked() {
+            return Err(Fault::Fatal(Box::new(Halted)));
+        }
         self.place(&state);
         self.apply_loads(roots);
         self.solve().map_err(|singular| self.singular(singular))?;

@@ -1,11 +1,12 @@
 //! Everything about a description that can be checked without mechanics: names, ranges, and
 //! whether what is named exists.
 
+use super::normal_law;
 use super::{
     BodyDescription, ClearanceDescription, Complaint, Complaints, Description, DriveDescription,
     DriveKind, FrictionDescription, JointDescription, JointKind, KeyPath, LoadDescription,
     LoadKind, NamedPoint, NormalDescription, NormalLawName, OfMaterials, StartDescription,
-    StiffnessDescription, did_you_mean,
+    StiffnessDescription, shortened,
 };
 use crate::scalar::Decimal;
 use std::collections::HashSet;
@@ -52,7 +53,8 @@ fn check_names<'a>(
     for name in names {
         if !is_name(name) {
             let rule = "a letter or underscore, then letters, digits and underscores";
-            complaints.add(list.key(name), format!("the name {name:?} must be {rule}"));
+            let told = shortened(name);
+            complaints.add(list.key(name), format!("the name {told:?} must be {rule}"));
         }
         if !seen.insert(name) {
             complaints.add(list.key(name), "stands there twice");
@@ -61,7 +63,7 @@ fn check_names<'a>(
 }
 
 /// Whether the word matches `[A-Za-z_][A-Za-z0-9_]*`.
-fn is_name(word: &str) -> bool {
+pub fn is_name(word: &str) -> bool {
     !word.starts_with(|c: char| c.is_ascii_digit())
         && !word.is_empty()
         && word.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
@@ -119,10 +121,11 @@ fn check_between(
     key: KeyPath,
     between: &[String; 2],
 ) {
-    let connects = format!("connects {:?} to {:?}", between[0], between[1]);
+    let [from, to] = between.each_ref().map(|end| shortened(end));
+    let connects = format!("connects {from:?} to {to:?}");
     let mut bodies = Vec::new();
     for end in between {
-        match find_point(description, end) {
+        match find_point(complaints, description, end) {
             Ok(body) => bodies.push(body),
             Err(reason) => complaints.add(key.clone(), format!("{connects}; {reason}")),
         }
@@ -134,25 +137,32 @@ fn check_between(
 }
 
 /// The body that owns the point written `body.point`, or why there is no such point.
-fn find_point<'a>(description: &Description, point: &'a str) -> Result<&'a str, String> {
+fn find_point<'a>(
+    complaints: &Complaints,
+    description: &Description,
+    point: &'a str,
+) -> Result<&'a str, String> {
     let Some((body, name)) = point.split_once('.') else {
-        return Err(format!("{point:?} is not written body.point"));
+        return Err(format!("{:?} is not written body.point", shortened(point)));
     };
     let known_bodies = || description.bodies.iter().map(|body| body.name.as_str());
     let points = match description.bodies.iter().find(|known| known.name == body) {
         _ if body == GROUND => &description.ground,
         Some(known) => &known.points,
         None => {
-            let near = did_you_mean(body, known_bodies().chain([GROUND]));
-            return Err(format!("there is no body {body:?}{near}"));
+            let near = complaints.near(body, known_bodies().chain([GROUND]));
+            return Err(format!("there is no body {:?}{near}", shortened(body)));
         }
     };
     if points.iter().any(|known| known.name == name) {
         return Ok(body);
     }
-    let near = did_you_mean(name, points.iter().map(|known| known.name.as_str()));
-    let owner = if body == GROUND { "the ground".into() } else { format!("body {body:?}") };
-    Err(format!("{owner} has no point {name:?}{near}"))
+    let near = complaints.near(name, points.iter().map(|known| known.name.as_str()));
+    let owner = match body == GROUND {
+        true => "the ground".into(),
+        false => format!("body {:?}", shortened(body)),
+    };
+    Err(format!("{owner} has no point {:?}{near}", shortened(name)))
 }
 
 fn check_clearance(complaints: &mut Complaints, key: &KeyPath, clearance: &ClearanceDescription) {
@@ -169,9 +179,23 @@ fn check_clearance(complaints: &mut Complaints, key: &KeyPath, clearance: &Clear
     let range = "a share of the journal's radius, greater than 0 and at most 1";
     let holds = |share: f64| share > 0.0 && share <= 1.0;
     complaints.require(key.key("maximum_penetration"), share, "", range, holds);
+    let before = complaints.len();
     check_normal(complaints, &key.key("normal"), &clearance.normal);
+    if bearing_right && radial_right && complaints.len() == before {
+        check_stiffness(complaints, key.key("normal").key("stiffness"), clearance);
+    }
     if let Some(friction) = &clearance.friction {
         check_friction(complaints, &key.key("friction"), friction);
+    }
+}
+
+/// Radii and materials in range may yet come to a stiffness that is no number.
+fn check_stiffness(complaints: &mut Complaints, key: KeyPath, clearance: &ClearanceDescription) {
+    let (bearing, radial) = (clearance.bearing_radius.to_f64(), clearance.radial.to_f64());
+    let stiffness = normal_law::<f64>(&clearance.normal, bearing, bearing - radial).stiffness();
+    if !(stiffness > 0.0 && stiffness.is_finite()) {
+        let from = "with these radii and materials";
+        complaints.add(key, format!("comes to {stiffness:e} (N/mⁿ) {from}: it must be positive"));
     }
 }
 
@@ -262,12 +286,13 @@ fn check_drives(complaints: &mut Complaints, description: &Description) {
         let joint = &drive.joint;
         let mut joints = description.joints.iter().map(|known| known.name.as_str());
         if !joints.clone().any(|known| known == joint) {
-            let near = did_you_mean(joint, joints.by_ref());
+            let near = complaints.near(joint, joints.by_ref());
+            let joint = shortened(joint);
             complaints.add(key.key("joint"), format!("there is no joint {joint:?}{near}"));
         }
         let earlier = &description.drives[..position];
         if let Some(other) = earlier.iter().find(|other| other.joint == *joint) {
-            let other = &other.name;
+            let (other, joint) = (&other.name, shortened(joint));
             complaints
                 .add(key.key("joint"), format!("drive {other:?} drives joint {joint:?} already"));
         }
@@ -297,8 +322,9 @@ fn check_starts(complaints: &mut Complaints, description: &Description) {
         }
         if !description.bodies.iter().any(|body| body.name == start.body) {
             let bodies = description.bodies.iter().map(|body| body.name.as_str());
-            let near = did_you_mean(&start.body, bodies);
-            complaints.add(key.clone(), format!("there is no body {:?}{near}", start.body));
+            let near = complaints.near(&start.body, bodies);
+            let body = shortened(&start.body);
+            complaints.add(key.clone(), format!("there is no body {body:?}{near}"));
         }
         check_start(complaints, &key, start);
     }

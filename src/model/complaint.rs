@@ -1,7 +1,43 @@
 //! What is wrong with a description, and where.
 
 use crate::scalar::Decimal;
+use std::borrow::Cow;
 use std::fmt;
+
+/// Complaints that are told; of the rest there is only the number. Nor is what might have been meant
+/// looked for beyond them, so that a file with ten thousand mistakes is refused at once.
+pub const MOST_TOLD: usize = 100;
+
+/// Letters of a name that are told; a longer one is hardly a name, and not worth looking for.
+const LONGEST_TOLD: usize = 100;
+
+/// Whether a terminal takes a letter for an order (control characters), or it turns the words around
+/// it about without being seen itself.
+pub fn is_order(c: char) -> bool {
+    c.is_control()
+        || matches!(c, '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2060}'..='\u{2069}')
+        || c == '\u{feff}'
+}
+
+/// A text that stays in its line and gives a terminal no orders: what would is shown by its number.
+pub fn one_line(text: &str) -> Cow<'_, str> {
+    if !text.contains(is_order) {
+        return Cow::Borrowed(text);
+    }
+    let shown = |c: char| match is_order(c) {
+        true => c.escape_default().to_string(),
+        false => c.to_string(),
+    };
+    Cow::Owned(text.chars().map(shown).collect())
+}
+
+/// A name as it is told: if it is very long only its begin.
+pub fn shortened(name: &str) -> Cow<'_, str> {
+    match name.char_indices().nth(LONGEST_TOLD) {
+        Some((end, _)) => Cow::Owned(format!("{}…", &name[..end])),
+        None => Cow::Borrowed(name),
+    }
+}
 
 /// The path of a key in a case file, `joints.A.clearance.radial`.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -32,6 +68,7 @@ impl fmt::Display for KeyPath {
         let bare = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
         for (position, key) in self.0.iter().enumerate() {
             let dot = if position > 0 { "." } else { "" };
+            let key = shortened(key);
             if !key.is_empty() && key.chars().all(bare) {
                 write!(f, "{dot}{key}")?;
             } else {
@@ -65,6 +102,21 @@ impl Complaints {
     /// Adds a complaint about a key.
     pub fn add(&mut self, key: KeyPath, message: impl Into<String>) {
         self.0.push(Complaint { key, message: message.into() });
+    }
+
+    /// [`did_you_mean`], as long as complaints are told.
+    pub fn near<'a>(&self, word: &str, known: impl IntoIterator<Item = &'a str>) -> String {
+        if self.0.len() < MOST_TOLD { did_you_mean(word, known) } else { String::new() }
+    }
+
+    /// How many there are.
+    pub fn len(&self) -> usize {
+        self.0.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
     }
 
     /// Complains unless the number is finite. `unit` may be empty; gives whether it is finite.
@@ -114,8 +166,12 @@ pub fn in_brackets(unit: &str) -> String {
 
 /// ` (did you mean "follower"?)` for the known word nearest to `word`, or nothing if none is near.
 pub fn did_you_mean<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> String {
+    if word.chars().nth(LONGEST_TOLD).is_some() {
+        return String::new();
+    }
     known
         .into_iter()
+        .filter(|candidate| candidate.len() <= LONGEST_TOLD)
         .map(|candidate| (strsim::jaro_winkler(word, candidate), candidate))
         .filter(|(likeness, _)| *likeness > 0.75)
         .max_by(|a, b| a.0.total_cmp(&b.0))

@@ -8,7 +8,7 @@ mod check;
 mod complaint;
 mod description;
 
-pub use check::check;
+pub use check::{check, is_name};
 pub use complaint::*;
 pub use description::*;
 

@@ -13,7 +13,7 @@ use crate::dae::Fault;
 use crate::mechanism::{Mechanism, Observation};
 use crate::model::Names;
 use crate::record::ResultFile;
-use crate::run::{Assembled, Contact, Event, Peak, Recorder, Revolution};
+use crate::run::{Assembled, Contact, Event, Peak, Recorder, Revolution, TooFar};
 use crate::simulate::Simulation;
 use std::convert::Infallible;
 use std::ops::ControlFlow;
@@ -41,12 +41,6 @@ impl RunExtremes {
     pub fn of_ideal(case: &Case, end: f64) -> Result<Self, Error> {
         let simulation = Simulation::new(case).map_err(Error::Case)?;
         if let Some(assembled) = Assembled::new(simulation.mechanism().clone()) {
-            // one drive: what it does in a revolution it does in all
-            let period = match assembled.mechanism().model().drives() {
-                [drive] => Revolutions::new(drive.law.rate(), end, usize::MAX),
-                _ => None,
-            };
-            let end = period.map_or(end, |period| end.min(period.period()));
             return Self::of_assembled(assembled, end, None);
         }
         let tolerance = case.plan.solver.relative_tolerance;
@@ -69,6 +63,7 @@ impl RunExtremes {
         let quantities = Quantity::all(&names);
         let tallies = quantities.iter().map(|quantity| Tally::new(parts, quantity.is_signed()));
         let mut tallies: Vec<Tally> = tallies.collect();
+        let end = once_round(&assembled, end);
         let mut scan = Scan { assembled: &mut assembled, last: Vec::new() };
         let spans = match parts {
             Some(parts) => (0..parts.count()).map(|k| parts.bounds(k)).collect(),
@@ -76,6 +71,10 @@ impl RunExtremes {
         };
         for [begin, end] in spans {
             let strides = ((end - begin) / scan.assembled.stride()).ceil().max(2.0);
+            if !(strides <= MOST_STRIDES) {
+                let source = Fault::Fatal(Box::new(TooFar { strides }));
+                return Err(Error::System { time: end, source });
+            }
             for k in 0..=strides as u64 {
                 let time = begin + (end - begin) * (k as f64 / strides);
                 scan.go(time, &quantities, &mut tallies)
@@ -101,6 +100,7 @@ impl RunExtremes {
         if let (Some(mechanism), Some(&end)) = (mechanism, times.last())
             && *mechanism.model().names() == names
             && let Some(assembled) = Assembled::new(mechanism)
+            && (parts.is_some() || once_round(&assembled, end) <= MOST_STRIDES * assembled.stride())
         {
             return Self::of_assembled(assembled, end, parts);
         }
@@ -120,6 +120,17 @@ impl RunExtremes {
             quantities.push((quantity, tally));
         }
         Ok(RunExtremes { names, quantities })
+    }
+}
+
+/// Strides through a mechanism in search of extremes, a minute's work.
+const MOST_STRIDES: f64 = 1e7;
+
+/// Where a walk to `end` (s) has seen all: what one drive does in a revolution it does in all.
+fn once_round(assembled: &Assembled<f64>, end: f64) -> f64 {
+    match assembled.mechanism().model().drives() {
+        [drive] => end.min(std::f64::consts::TAU / drive.law.rate().abs()),
+        _ => end,
     }
 }
 

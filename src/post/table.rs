@@ -5,6 +5,7 @@ use super::{
     Stretch, Summary, Tally,
 };
 use crate::certify::{ONE_DRAW, ms};
+use crate::model::one_line;
 use comfy_table::presets::NOTHING;
 use comfy_table::{CellAlignment, LineStyle, Table};
 use std::fmt;
@@ -49,8 +50,9 @@ impl fmt::Display for Summary {
 impl Summary {
     fn heading(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let colon = if self.title.is_empty() { "" } else { ": " };
-        writeln!(f, "{}  {}{colon}{}", self.path.display(), self.case_name, self.title)?;
-        let (status, end) = (&self.status, figures(self.end * 1e3, 6));
+        let (name, title) = (one_line(&self.case_name), one_line(&self.title));
+        writeln!(f, "{}  {name}{colon}{title}", self.path.display())?;
+        let (status, end) = (one_line(&self.status), figures(self.end * 1e3, 6));
         write!(f, "{status}, {end} ms, {} samples", self.samples)?;
         if let Some(turning) = &self.turning {
             let parts = turning.revolutions;
@@ -65,7 +67,7 @@ impl Summary {
             }
             Ok(Reference::Itself) => writeln!(f, "ideal: no joint has clearance"),
             Ok(Reference::File { path, case_name, .. }) => {
-                writeln!(f, "ratios to {case_name} in {}", path.display())
+                writeln!(f, "ratios to {} in {}", one_line(case_name), path.display())
             }
             Err(_) => writeln!(f, "no ratios: there is no ideal run"),
         }?;

@@ -17,6 +17,8 @@ type Identifier = i64;
 unsafe extern "C" {
     fn H5DSset_scale(scale: Identifier, name: *const c_char) -> c_int;
     fn H5DSattach_scale(dataset: Identifier, scale: Identifier, dimension: c_uint) -> c_int;
+    fn H5DSget_num_scales(dataset: Identifier, dimension: c_uint) -> c_int;
+    fn H5DSis_attached(dataset: Identifier, scale: Identifier, dimension: c_uint) -> c_int;
 }
 
 // SAFETY: the signatures are those of H5Apublic.h, HDF5 1.10.
@@ -25,6 +27,9 @@ unsafe extern "C" {
     fn H5Awrite(attribute: Identifier, memory_type: Identifier, buffer: *const c_void) -> c_int;
     fn H5Aread(attribute: Identifier, memory_type: Identifier, buffer: *mut c_void) -> c_int;
 }
+
+/// Longest text that is read (bytes): no file of ours has one a tenth as long.
+const LONGEST_TEXT: usize = 1 << 26;
 
 /// Runs a call under the library's lock; a negative status becomes the library's error.
 fn call(f: impl FnOnce() -> c_int) -> Result<()> {
@@ -44,6 +49,30 @@ pub(super) fn attach_scale(dataset: &Dataset, scale: &Dataset, dimension: u32) -
     // SAFETY: both are open datasets for the length of the call, which takes numbers only and
     // itself checks that the dimension exists; the library's lock is held.
     call(|| unsafe { H5DSattach_scale(dataset.id(), scale.id(), dimension) })
+}
+
+/// Number of scales that a dimension of a dataset has.
+pub(super) fn scales_of(dataset: &Dataset, dimension: u32) -> Result<usize> {
+    let mut scales = 0;
+    call(|| {
+        // SAFETY: it is an open dataset for the length of the call, which takes numbers only and
+        // itself checks that the dimension exists; the library's lock is held.
+        scales = unsafe { H5DSget_num_scales(dataset.id(), dimension) };
+        scales
+    })?;
+    Ok(scales as usize)
+}
+
+/// Whether a dimension of a dataset has this scale. That looks through all that have it.
+pub(super) fn is_attached(dataset: &Dataset, scale: &Dataset, dimension: u32) -> Result<bool> {
+    let mut attached = 0;
+    call(|| {
+        // SAFETY: both are open datasets for the length of the call, which takes numbers only and
+        // itself checks that the dimension exists; the library's lock is held.
+        attached = unsafe { H5DSis_attached(dataset.id(), scale.id(), dimension) };
+        attached
+    })?;
+    Ok(attached > 0)
 }
 
 /// Writes a new attribute of fixed length: the text, or one NUL if there is none.
@@ -68,6 +97,9 @@ pub(super) fn read_text(attribute: &Attribute) -> Result<Option<String>> {
     );
     if !fixed || attribute.size() != 1 {
         return Ok(None);
+    }
+    if stored.size() > LONGEST_TEXT {
+        return Err(format!("a text of {} bytes", stored.size()).into());
     }
     let mut bytes = vec![0_u8; stored.size()];
     // SAFETY: the attribute is one string of fixed length, so that `stored.size()` bytes are

@@ -13,6 +13,38 @@ pub enum Error {
         /// The output asked for.
         path: PathBuf,
     },
+    /// The output is one of the files that it is made from.
+    #[error("{} is an input of this command, which writing there would destroy; choose another output", path.display())]
+    IsInput {
+        /// The output asked for.
+        path: PathBuf,
+    },
+    /// Another process is writing the output.
+    #[error("{} is being written by process {process}; wait for it, or choose another output", path.display())]
+    Busy {
+        /// The output asked for.
+        path: PathBuf,
+        /// Who is writing it.
+        process: u32,
+    },
+    /// Writing failed; what was written before is a file of its own.
+    #[error("{} is incomplete; what was written before the error is in {}", path.display(), kept.display())]
+    Incomplete {
+        /// The output asked for.
+        path: PathBuf,
+        /// Where the rest is.
+        kept: PathBuf,
+        /// What failed.
+        source: Box<Error>,
+    },
+    /// What was read back from the disk is not what was written.
+    #[error("cannot write {}: {what} came back from the disk otherwise than it was written", path.display())]
+    NotAsWritten {
+        /// The output asked for.
+        path: PathBuf,
+        /// Which part of the file.
+        what: String,
+    },
     /// The output came to be while the run went on; the run's own file is kept beside it.
     #[error("{} was made by another program during the run; this run's file is {}", path.display(), kept.display())]
     Taken {

@@ -4,6 +4,7 @@
 //! Everything lies flat in the root, in numbers of fixed size and text in attributes, so that
 //! h5py, xarray, `ncdump`, Octave and MATLAB open it without a line of ours.
 
+mod arrival;
 mod attribute;
 mod dimension_scale;
 mod error;
@@ -13,16 +14,19 @@ mod publish;
 mod reader;
 mod schema;
 mod seal;
+mod sound;
 mod store;
 mod writer;
 
+pub(crate) use arrival::Written;
 pub use attribute::Attribute;
 pub use error::{Error, LibraryError};
 pub use header::{Ending, Header, Outcome, Series, utc};
 pub use overview::Overview;
-pub(crate) use publish::Draft;
+pub(crate) use publish::{Draft, abandon_drafts};
 pub use reader::{ResultFile, Table};
 pub use schema::{DATASETS, Dataset, Dimension, SCHEMA_VERSION, Source, Values, column_name};
 pub use seal::{Seal, sha256};
+pub(crate) use sound::{Member, Ration, members};
 pub use store::hdf5_version;
 pub use writer::Writer;

@@ -1,6 +1,7 @@
 //! What a result file holds and how it was made, in words.
 
 use super::{Attribute, Dimension, Error, ResultFile};
+use crate::model::one_line;
 use serde_json::{Map, Value, json};
 use std::fmt;
 use std::path::PathBuf;
@@ -81,8 +82,10 @@ impl Overview {
 impl fmt::Display for Overview {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "{}", self.path.display())?;
-        writeln!(f, "  case       {}: {}", self.case_name, self.title)?;
-        writeln!(f, "  run        {}", self.status)?;
+        let [name, title, status] =
+            [&self.case_name, &self.title, &self.status].map(|text| one_line(text));
+        writeln!(f, "  case       {name}: {title}")?;
+        writeln!(f, "  run        {status}")?;
         for (dimension, length, names) in &self.dimensions {
             write!(f, "  {:<9}  {length}", dimension.name())?;
             match (dimension, self.span) {
@@ -95,7 +98,8 @@ impl fmt::Display for Overview {
         }
         writeln!(f, "  made with")?;
         for (name, attribute) in &self.attributes {
-            writeln!(f, "    {name} = {attribute}")?;
+            let told = attribute.to_string();
+            writeln!(f, "    {} = {}", one_line(name), one_line(&told))?;
         }
         Ok(())
     }

@@ -3,12 +3,14 @@
 use super::schema::{
     DATASETS, Dataset, Dimension, Part, SCHEMA_VERSION, Side, Source, column_name,
 };
+use super::sound::{Member, Ration, members};
 use super::{Attribute, Error, LibraryError};
 use crate::mechanism::{Measure, Measures};
-use crate::model::did_you_mean;
+use crate::model::{did_you_mean, is_name, shortened};
 use crate::run::{Contact, Event, EventKind, Extremum, Peak, Revolution};
 use hdf5::{File, IndexType, IterationOrder, MinorErrorCode};
 use ndarray::{Array2, s};
+use std::collections::HashSet;
 use std::io::{Error as SystemError, ErrorKind};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -60,6 +62,7 @@ impl ResultFile {
         };
         result.attributes = result.read_attributes()?;
         result.check_schema()?;
+        result.check_members()?;
         for dimension in Dimension::ALL {
             result.lengths[dimension as usize] = result.read_length(dimension)?;
             result.names[dimension as usize] = result.read_names(dimension)?;
@@ -187,7 +190,7 @@ impl ResultFile {
             DATASETS.iter().flat_map(|dataset| self.columns_of(dataset)).collect();
         Error::Missing {
             path: self.path.clone(),
-            what: format!("column \"{name}\""),
+            what: format!("column {:?}", shortened(name)),
             hint: did_you_mean(name, columns.iter().map(String::as_str)),
         }
     }
@@ -453,11 +456,49 @@ impl ResultFile {
             Some(Attribute::Text(names)) => names.split(' ').map(str::to_owned).collect(),
             _ => Vec::new(),
         };
+        if let Some((at, name)) = names.iter().enumerate().find(|(_, name)| !is_name(name)) {
+            let name = shortened(name);
+            return Err(self.damaged(format!("{} {at} has no name but {name:?}", dimension.name())));
+        }
+        let mut seen = HashSet::new();
+        if let Some(name) = names.iter().find(|name| !seen.insert(*name)) {
+            return Err(self.damaged(format!("{} has {name:?} twice", dimension.name())));
+        }
         if names.len() == self.length(dimension) {
             return Ok(names);
         }
         let (count, name) = (self.length(dimension), dimension.name());
         Err(self.damaged(format!("{name} has {count} items and {} names", names.len())))
+    }
+
+    /// Everything lies in the file itself, and is no larger than it can be.
+    fn check_members(&self) -> Result<(), Error> {
+        let failed = |error| self.failed("read the contents of", error);
+        let size = std::fs::metadata(&self.path).map_err(|source| Error::System {
+            attempt: "read",
+            path: self.path.clone(),
+            source,
+        })?;
+        let mut ration = Ration::new(size.len());
+        let mut seen = Vec::new();
+        for (name, member) in members(&self.file).map_err(failed)? {
+            match member {
+                Member::Link => {
+                    let rule = "which is not followed";
+                    return Err(self.damaged(format!("{name:?} is a link to elsewhere, {rule}")));
+                }
+                // two names for one dataset claim its bytes once
+                Member::Dataset(token) if !seen.contains(&token) => {
+                    seen.push(token);
+                    let dataset = self.file.dataset(&name).map_err(failed)?;
+                    if let Some(why) = ration.refuses(&dataset).map_err(failed)? {
+                        return Err(self.damaged(format!("{name:?} {why}")));
+                    }
+                }
+                _ => {}
+            }
+        }
+        Ok(())
     }
 
     /// Every dataset that is there has the shape that the dimensions ask for.

@@ -1,6 +1,7 @@
 //! The HDF5 file as it is being written: made with all its datasets, then grown by blocks of rows.
 
-use super::dimension_scale::{attach_scale, set_scale};
+use super::arrival::Written;
+use super::dimension_scale::set_scale;
 use super::header::{Ending, Header, Outcome, Series};
 use super::schema::{DATASETS, Dataset, Dimension, SCHEMA_VERSION, Values};
 use super::seal::{CERTIFICATE, SEAL, seal_of, sha256};
@@ -64,6 +65,9 @@ pub(super) struct Store {
     scales: Vec<(Dimension, hdf5::Dataset)>,
     rows: [usize; Dimension::ALL.len()],
     file: File,
+    written: Written,
+    /// Where the file is, and what it will be called.
+    at: PathBuf,
     path: PathBuf,
 }
 
@@ -71,12 +75,16 @@ impl Store {
     /// Makes the file at `at` with all its attributes and empty datasets; errors name `path`.
     pub fn create(at: &Path, path: &Path, header: &Header) -> Result<Self, Error> {
         let file = create_file(at).map_err(failed("create", path))?;
-        write_header(&file, header).map_err(failed("write the attributes of", path))?;
+        let mut written = Written::default();
+        write_header(&file, &mut written, header)
+            .map_err(failed("write the attributes of", path))?;
         let mut store = Store {
             handles: Vec::new(),
             scales: Vec::new(),
             rows: [0; Dimension::ALL.len()],
             file,
+            written,
+            at: at.to_owned(),
             path: path.to_owned(),
         };
         store.create_scales(header).map_err(failed("make the dimensions of", path))?;
@@ -87,7 +95,7 @@ impl Store {
     fn create_scales(&mut self, header: &Header) -> hdf5::Result<()> {
         for (id, dimension) in Dimension::ALL.into_iter().enumerate() {
             let handle = match names(header, dimension) {
-                Some(names) => named_scale(&self.file, dimension, names)?,
+                Some(names) => named_scale(&self.file, &mut self.written, dimension, names)?,
                 None if dimension == Dimension::Time => {
                     create_growing::<f64>(&self.file, dimension.name(), CHUNK_ROWS, None)?
                 }
@@ -99,8 +107,8 @@ impl Store {
             set_scale(&handle, dimension.name())?;
             handle.new_attr::<i32>().create("_Netcdf4Dimid")?.write_scalar(&(id as i32))?;
             let unit = if dimension == Dimension::Time { "s" } else { "1" };
-            Attribute::from(unit).write(&handle, "units")?;
-            Attribute::from(dimension.long_name()).write(&handle, "long_name")?;
+            self.written.attribute(&handle, "units", unit)?;
+            self.written.attribute(&handle, "long_name", dimension.long_name())?;
             self.scales.push((dimension, handle));
         }
         Ok(())
@@ -111,20 +119,22 @@ impl Store {
             let width =
                 dataset.items().map(|items| names(header, items).map_or(0, <[String]>::len));
             let handle = if dataset.name == Dimension::Time.name() {
-                self.scale(Dimension::Time).clone()
+                self.scales[Dimension::Time as usize].1.clone()
             } else {
                 let Dataset { name, unit, long_name, values, .. } = *dataset;
                 let handle = create_dataset(
                     &self.file,
+                    &mut self.written,
                     name,
                     unit,
                     long_name,
                     values,
                     (chunk_rows(dataset.rows()), width),
                 )?;
-                attach_scale(&handle, self.scale(dataset.rows()), 0)?;
-                if let Some(items) = dataset.items() {
-                    attach_scale(&handle, self.scale(items), 1)?;
+                let dimensions = [dataset.rows()].into_iter().chain(dataset.items());
+                for (place, dimension) in (0..).zip(dimensions) {
+                    let scale = &self.scales[dimension as usize].1;
+                    self.written.scale(&handle, scale, place)?;
                 }
                 handle
             };
@@ -133,32 +143,59 @@ impl Store {
         Ok(())
     }
 
-    /// The scale of a dimension.
-    fn scale(&self, dimension: Dimension) -> &hdf5::Dataset {
-        &self.scales[dimension as usize].1
-    }
-
     /// Writes a block behind the rows that are there.
     pub fn append(&mut self, block: &Block) -> Result<(), Error> {
         let begin = self.rows[block.dimension as usize];
         let rows = begin..begin + block.rows;
-        self.rows[block.dimension as usize] = rows.end;
-        if block.dimension != Dimension::Time {
-            let indices: Vec<i32> = rows.clone().map(|row| row as i32).collect();
-            append_rows(self.scale(block.dimension), rows.clone(), None, &indices)
-                .map_err(failed(format!("write {} to", block.dimension.name()), &self.path))?;
+        let indices: Vec<i32> = rows.clone().map(|row| row as i32).collect();
+        let scale = (block.dimension != Dimension::Time).then(|| block.dimension.name());
+        if let Some(name) = scale {
+            let (_, scale) = &self.scales[block.dimension as usize];
+            append_rows(scale, rows.clone(), None, &indices)
+                .map_err(failed(format!("write {name} to"), &self.path))?;
         }
         let open = self.handles.iter().filter(|open| open.dataset.rows() == block.dimension);
-        for (open, values) in open.zip(&block.columns) {
+        let columns = || open.clone().zip(&block.columns);
+        for (open, values) in columns() {
             let width = open.dataset.items().map(|_| open.width);
             write_values(&open.handle, open.dataset.values, width, rows.clone(), values)
                 .map_err(failed(format!("write {} to", open.dataset.name), &self.path))?;
         }
+        self.rows[block.dimension as usize] = rows.end;
+        if let Some(name) = scale {
+            self.written.values(name, &indices);
+        }
+        for (open, values) in columns() {
+            note(&mut self.written, open.dataset.name, open.dataset.values, values);
+        }
         Ok(())
     }
 
+    /// Goes back to the rows that all datasets of a dimension have, after a block that failed, and
+    /// closes the file with them.
+    pub fn retreat(self, ending: &Ending) -> Result<(), Error> {
+        let rows = |dimension: Dimension| self.rows[dimension as usize];
+        let shorten = || -> hdf5::Result<()> {
+            let growing = |dimension: &Dimension| {
+                datasets_of(*dimension).next().is_some() && *dimension != Dimension::Time
+            };
+            for (dimension, scale) in self.scales.iter().filter(|(of, _)| growing(of)) {
+                scale.resize(rows(*dimension))?;
+            }
+            for Open { dataset, width, handle } in &self.handles {
+                match dataset.items() {
+                    None => handle.resize(rows(dataset.rows()))?,
+                    Some(_) => handle.resize((rows(dataset.rows()), *width))?,
+                }
+            }
+            Ok(())
+        };
+        shorten().map_err(failed("shorten", &self.path))?;
+        self.close(ending)
+    }
+
     /// Makes a dataset of values that are known as a whole.
-    fn add(&self, series: &Series) -> hdf5::Result<()> {
+    fn add(&mut self, series: &Series) -> hdf5::Result<()> {
         let rows = self.rows[series.along as usize];
         if series.values.len() != rows {
             let (name, length) = (series.name, series.values.len());
@@ -167,30 +204,37 @@ impl Store {
         let Series { name, unit, long_name, stored, .. } = *series;
         let handle = create_dataset(
             &self.file,
+            &mut self.written,
             name,
             unit,
             long_name,
             stored,
             (chunk_rows(series.along), None),
         )?;
-        attach_scale(&handle, self.scale(series.along), 0)?;
-        write_values(&handle, stored, None, 0..rows, &series.values)
+        self.written.scale(&handle, &self.scales[series.along as usize].1, 0)?;
+        write_values(&handle, stored, None, 0..rows, &series.values)?;
+        note(&mut self.written, name, stored, &series.values);
+        Ok(())
     }
 
-    /// Writes how the run ended, seals a certificate, and closes the file.
-    pub fn close(self, ending: &Ending) -> Result<(), Error> {
+    /// Writes how the run ended, seals a certificate, closes the file, and reads it back.
+    pub fn close(mut self, ending: &Ending) -> Result<(), Error> {
         for series in &ending.series {
             self.add(series).map_err(failed(format!("write {} to", series.name), &self.path))?;
         }
-        let Store { handles, scales, file, path, .. } = self;
+        let Store { handles, scales, file, mut written, at, path, .. } = self;
         drop((handles, scales));
-        write_ending(&file, ending).map_err(failed("write the ending of", &path))?;
+        write_ending(&file, &mut written, ending).map_err(failed("write the ending of", &path))?;
         if ending.series.iter().any(|series| series.name == CERTIFICATE) {
-            let sealed = seal_of(&file).and_then(|seal| Attribute::from(seal).write(&file, SEAL));
+            let sealed = seal_of(&file).and_then(|seal| written.attribute(&file, SEAL, seal));
             sealed.map_err(failed("seal", &path))?;
         }
         file.flush().map_err(failed("write", &path))?;
-        file.close().map_err(failed("close", &path))
+        file.close().map_err(failed("close", &path))?;
+        match written.missing(&at) {
+            Some(what) => Err(Error::NotAsWritten { path, what }),
+            None => Ok(()),
+        }
     }
 }
 
@@ -236,7 +280,12 @@ fn create_file(at: &Path) -> hdf5::Result<File> {
 }
 
 /// The scale of a dimension whose items have names, which flags tell.
-fn named_scale(file: &File, dimension: Dimension, names: &[String]) -> hdf5::Result<hdf5::Dataset> {
+fn named_scale(
+    file: &File,
+    written: &mut Written,
+    dimension: Dimension,
+    names: &[String],
+) -> hdf5::Result<hdf5::Dataset> {
     let indices: Vec<i32> = (0..names.len() as i32).collect();
     let scale = file
         .new_dataset::<i32>()
@@ -245,9 +294,10 @@ fn named_scale(file: &File, dimension: Dimension, names: &[String]) -> hdf5::Res
         .shape(names.len())
         .create(dimension.name())?;
     scale.write(&indices)?;
+    written.values(dimension.name(), &indices);
     if !names.is_empty() {
-        scale.new_attr::<i32>().shape(names.len()).create("flag_values")?.write(&indices)?;
-        Attribute::from(names.join(" ")).write(&scale, "flag_meanings")?;
+        written.list(&scale, "flag_values", &indices)?;
+        written.attribute(&scale, "flag_meanings", names.join(" "))?;
     }
     Ok(scale)
 }
@@ -276,6 +326,7 @@ fn create_growing<T: H5Type>(
 
 fn create_dataset(
     file: &File,
+    written: &mut Written,
     name: &str,
     unit: &str,
     long_name: &str,
@@ -287,12 +338,12 @@ fn create_dataset(
         Values::Index => create_growing::<i32>(file, name, rows, width),
         Values::Flag(_) => create_growing::<i8>(file, name, rows, width),
     }?;
-    Attribute::from(unit).write(&handle, "units")?;
-    Attribute::from(long_name).write(&handle, "long_name")?;
+    written.attribute(&handle, "units", unit)?;
+    written.attribute(&handle, "long_name", long_name)?;
     if let Values::Flag(meanings) = stored {
         let values: Vec<i8> = (0..meanings.len() as i8).collect();
-        handle.new_attr::<i8>().shape(meanings.len()).create("flag_values")?.write(&values)?;
-        Attribute::from(meanings.join(" ")).write(&handle, "flag_meanings")?;
+        written.list(&handle, "flag_values", &values)?;
+        written.attribute(&handle, "flag_meanings", meanings.join(" "))?;
     }
     Ok(handle)
 }
@@ -307,15 +358,26 @@ fn write_values(
 ) -> hdf5::Result<()> {
     match stored {
         Values::Real => append_rows(handle, rows, width, values),
-        Values::Index => {
-            let values: Vec<i32> = values.iter().map(|&value| value as i32).collect();
-            append_rows(handle, rows, width, &values)
-        }
-        Values::Flag(_) => {
-            let values: Vec<i8> = values.iter().map(|&value| value as i8).collect();
-            append_rows(handle, rows, width, &values)
-        }
+        Values::Index => append_rows(handle, rows, width, &indices_of(values)),
+        Values::Flag(_) => append_rows(handle, rows, width, &flags_of(values)),
     }
+}
+
+/// Takes note of values as they are stored.
+fn note(written: &mut Written, name: &str, stored: Values, values: &[f64]) {
+    match stored {
+        Values::Real => written.values(name, values),
+        Values::Index => written.values(name, &indices_of(values)),
+        Values::Flag(_) => written.values(name, &flags_of(values)),
+    }
+}
+
+fn indices_of(values: &[f64]) -> Vec<i32> {
+    values.iter().map(|&value| value as i32).collect()
+}
+
+fn flags_of(values: &[f64]) -> Vec<i8> {
+    values.iter().map(|&value| value as i8).collect()
 }
 
 /// Grows a dataset to the end of `rows` and writes these rows.
@@ -342,7 +404,7 @@ pub fn hdf5_version() -> String {
 }
 
 /// Writes the attributes of the root that are known before the run.
-fn write_header(file: &File, header: &Header) -> hdf5::Result<()> {
+fn write_header(file: &File, written: &mut Written, header: &Header) -> hdf5::Result<()> {
     let own = [
         ("Conventions", Attribute::from("CF-1.11")),
         ("title", Attribute::from(&*header.title)),
@@ -355,35 +417,35 @@ fn write_header(file: &File, header: &Header) -> hdf5::Result<()> {
         ("case_sha256", Attribute::from(sha256(&header.case_text))),
     ];
     for (name, attribute) in own {
-        attribute.write(file, name)?;
+        written.attribute(file, name, attribute)?;
     }
     for (name, attribute) in &header.attributes {
-        attribute.write(file, name)?;
+        written.attribute(file, name, attribute.clone())?;
     }
-    Attribute::from(&*header.started_utc).write(file, "started_utc")?;
-    Attribute::from("running").write(file, "run_status")
+    written.attribute(file, "started_utc", &*header.started_utc)?;
+    written.attribute(file, "run_status", "running")
 }
 
 /// Writes the attributes of the root that the end of the run brings.
-fn write_ending(file: &File, ending: &Ending) -> hdf5::Result<()> {
+fn write_ending(file: &File, written: &mut Written, ending: &Ending) -> hdf5::Result<()> {
     for count in &ending.rulings {
         let name = format!("ruling_{}_count", count.name);
-        Attribute::from(count.value as i64).write(file, &name)?;
+        written.attribute(file, &name, count.value as i64)?;
     }
     for count in &ending.counts {
         let name = format!("solver_{}", count.name);
-        Attribute::from(count.value as i64).write(file, &name)?;
+        written.attribute(file, &name, count.value as i64)?;
     }
     for (name, value) in &ending.attributes {
-        value.write(file, name)?;
+        written.attribute(file, name, value.clone())?;
     }
-    Attribute::from(&*ending.finished_utc).write(file, "finished_utc")?;
+    written.attribute(file, "finished_utc", &*ending.finished_utc)?;
     file.delete_attr("run_status")?;
     match &ending.outcome {
-        Outcome::Complete => Attribute::from("complete").write(file, "run_status"),
+        Outcome::Complete => written.attribute(file, "run_status", "complete"),
         Outcome::Failed { reason } => {
-            Attribute::from("failed").write(file, "run_status")?;
-            Attribute::from(&**reason).write(file, "run_failure")
+            written.attribute(file, "run_status", "failed")?;
+            written.attribute(file, "run_failure", &**reason)
         }
     }
 }

@@ -5,7 +5,7 @@
 //! blocks are ever in memory.
 
 use super::Error;
-use super::header::{Ending, Header, Outcome};
+use super::header::{Ending, Header, Outcome, utc};
 use super::publish::Draft;
 use super::schema::{Dimension, Part, Side, Source};
 use super::store::{Block, CHUNK_ROWS, Store, datasets_of};
@@ -14,6 +14,7 @@ use crate::run::{Contact, Event, Extremum, Peak, Recorder, Revolution};
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::thread::JoinHandle;
+use std::time::SystemTime;
 
 /// What the writing thread is told.
 enum Message {
@@ -26,7 +27,9 @@ enum Message {
 #[derive(Debug)]
 pub struct Writer {
     sender: Option<SyncSender<Message>>,
-    thread: Option<JoinHandle<Result<(), Error>>>,
+    thread: Option<JoinHandle<Result<(), Stopped>>>,
+    /// Whether the thread has closed a file of what there was before an error.
+    kept: bool,
     samples: Block,
     events: Block,
     contacts: Block,
@@ -50,15 +53,30 @@ impl Writer {
     /// Begins a result file at `path`; with `force` a complete one will replace an old file.
     ///
     /// # Errors
-    /// [`Error::Exists`], [`Error::NoFolder`], [`Error::NotPlain`], or what the operating system
-    /// or the HDF5 library says.
+    /// [`Error::Exists`], [`Error::NoFolder`], [`Error::NotPlain`], [`Error::Busy`], or what the
+    /// operating system or the HDF5 library says.
     pub fn create(path: &Path, header: Header, force: bool) -> Result<Writer, Error> {
-        let draft = Draft::create(path, force)?;
+        Writer::create_from(path, header, force, &[])
+    }
+
+    /// The same for a result that is made from files: none of these may be its output, with `force`
+    /// neither.
+    ///
+    /// # Errors
+    /// Those of [`create`](Writer::create), and [`Error::IsInput`].
+    pub fn create_from(
+        path: &Path,
+        header: Header,
+        force: bool,
+        inputs: &[&Path],
+    ) -> Result<Writer, Error> {
+        let mut draft = Draft::create_from(path, force, inputs)?;
+        let room = draft.take_room(ROOM)?;
         let store = Store::create(draft.temporary(), path, &header)?;
         let (sender, receiver) = sync_channel(0);
         let thread = std::thread::Builder::new()
             .name("result file".to_owned())
-            .spawn(move || write(store, &receiver))
+            .spawn(move || write(store, &receiver, &room))
             .map_err(|source| {
                 let path = path.to_owned();
                 Error::System { attempt: "start the thread that writes", path, source }
@@ -66,6 +84,7 @@ impl Writer {
         Ok(Writer {
             sender: Some(sender),
             thread: Some(thread),
+            kept: false,
             samples: Block::new(Dimension::Time),
             events: Block::new(Dimension::Event),
             contacts: Block::new(Dimension::Contact),
@@ -84,11 +103,34 @@ impl Writer {
 
     /// Writes what is left and the ending, and publishes the file: a complete one under the name
     /// asked for, a failed one there only if nothing is there, else as `NAME.failed.h5` beside
-    /// it. Returns the path of the published file.
+    /// it. Returns the path of the published file. After an error of writing that is one with the
+    /// blocks before it, as far as the disk had room for an ending.
     ///
     /// # Errors
-    /// What the writing thread met, or [`Error::Taken`], or what the operating system says.
+    /// What the writing thread met, [`Error::Incomplete`] if that was in the last blocks and the
+    /// others are kept, or [`Error::Taken`], or what the operating system says.
     pub fn finish(mut self, ending: Ending) -> Result<PathBuf, Error> {
+        if !self.kept {
+            match self.finish_whole(ending) {
+                Err(error) if self.kept => {
+                    let kept = self.publish_kept()?;
+                    let path = self.path.clone();
+                    return Err(Error::Incomplete { path, kept, source: Box::new(error) });
+                }
+                finished => return finished,
+            }
+        }
+        self.publish_kept()
+    }
+
+    fn publish_kept(&mut self) -> Result<PathBuf, Error> {
+        match self.draft.take() {
+            Some(draft) => draft.publish_failed(),
+            None => Err(Error::Failed { path: self.path.clone() }),
+        }
+    }
+
+    fn finish_whole(&mut self, ending: Ending) -> Result<PathBuf, Error> {
         for block in [
             std::mem::replace(&mut self.samples, Block::new(Dimension::Time)),
             std::mem::replace(&mut self.events, Block::new(Dimension::Event)),
@@ -119,7 +161,11 @@ impl Writer {
     fn join(&mut self) -> Result<(), Error> {
         self.sender = None;
         match self.thread.take().map(JoinHandle::join) {
-            Some(Ok(result)) => result,
+            Some(Ok(Ok(()))) => Ok(()),
+            Some(Ok(Err(Stopped { error, kept }))) => {
+                self.kept = kept;
+                Err(error)
+            }
             Some(Err(panic)) => std::panic::resume_unwind(panic),
             None => Err(Error::Failed { path: self.path.clone() }),
         }
@@ -245,12 +291,39 @@ impl Drop for Writer {
     }
 }
 
-/// Writes blocks until the ending comes, or the writer is gone.
-fn write(mut store: Store, messages: &Receiver<Message>) -> Result<(), Error> {
+/// Room (bytes) that is kept for the ending of a file on a full disk: what HDF5 has in its caches.
+const ROOM: usize = 1 << 20;
+
+/// Why the thread ended early.
+#[derive(Debug)]
+struct Stopped {
+    error: Error,
+    /// Whether the file was closed with what there was before.
+    kept: bool,
+}
+
+/// Writes blocks until the ending comes, or the writer is gone. A block that fails ends the file;
+/// `room` is removed then.
+fn write(mut store: Store, messages: &Receiver<Message>, room: &Path) -> Result<(), Stopped> {
     for message in messages {
         match message {
-            Message::Block(block) => store.append(&block)?,
-            Message::Finish(ending) => return store.close(&ending),
+            Message::Block(block) => {
+                let Err(error) = store.append(&block) else { continue };
+                let _ = std::fs::remove_file(room);
+                let kept = store.retreat(&Ending {
+                    outcome: Outcome::Failed { reason: error.to_string() },
+                    counts: Vec::new(),
+                    rulings: Vec::new(),
+                    finished_utc: utc(SystemTime::now()),
+                    series: Vec::new(),
+                    attributes: Vec::new(),
+                });
+                return Err(Stopped { error, kept: kept.is_ok() });
+            }
+            Message::Finish(ending) => {
+                let closed = store.close(&ending);
+                return closed.map_err(|error| Stopped { error, kept: false });
+            }
         }
     }
     Ok(())

@@ -10,8 +10,8 @@ pub(super) fn escape(text: &str) -> String {
             '>' => escaped.push_str("&gt;"),
             '"' => escaped.push_str("&quot;"),
             '\'' => escaped.push_str("&#39;"),
-            // No character of HTML, and browsers stop or replace there.
-            '\0' => escaped.push('\u{fffd}'),
+            // No characters of HTML, and orders for a terminal that the page is shown on.
+            c if c.is_control() && !matches!(c, '\n' | '\r' | '\t') => escaped.push('\u{fffd}'),
             c => escaped.push(c),
         }
     }

@@ -20,7 +20,7 @@ use crate::post::Summary;
 use crate::record::{self, Draft, ResultFile};
 use html::{escape, json_in_script};
 use run::{PageRun, Run};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use tables::Summarised;
 
 /// Samples that a page holds at most, of all its runs together.
@@ -30,6 +30,8 @@ const MOST_SAMPLES: usize = 240_000;
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Report {
     html: String,
+    /// The result files that it is made from.
+    sources: Vec<PathBuf>,
 }
 
 impl Report {
@@ -67,7 +69,8 @@ impl Report {
             runs: &json_in_script(&serde_json::to_string(&pages)?),
             program: concat!("freeplay ", env!("CARGO_PKG_VERSION")),
         });
-        Ok(Report { html })
+        let sources = files.iter().map(|file| file.path().to_owned()).collect();
+        Ok(Report { html, sources })
     }
 
     /// The page.
@@ -78,9 +81,10 @@ impl Report {
     /// Writes the page; with `force` in place of one that is there.
     ///
     /// # Errors
-    /// The page is there and `force` is not, or it cannot be written.
+    /// The page is there and `force` is not, or is one of the result files, or cannot be written.
     pub fn write(&self, path: &Path, force: bool) -> Result<(), record::Error> {
-        Draft::create(path, force)?.publish_bytes(self.html.as_bytes())
+        let sources: Vec<&Path> = self.sources.iter().map(PathBuf::as_path).collect();
+        Draft::create_from(path, force, &sources)?.publish_bytes(self.html.as_bytes())
     }
 }
 

@@ -7,6 +7,7 @@
 use super::extremes::{Look, Parts, Tracker};
 use super::{Error, Progress, Recorder, RulingCounts, Schedule, Watcher};
 use crate::dae::{Fault, Snapshot, State, System};
+use crate::halt;
 use crate::mechanism::{Mechanism, Observation};
 use crate::scalar::Scalar;
 use std::convert::Infallible;
@@ -14,6 +15,9 @@ use std::ops::ControlFlow;
 
 /// The fastest body turns by no more than this angle (rad) from one assembly to the next.
 const LARGEST_TURN: f64 = 0.05;
+
+/// Strides that are gone to a time that is asked for: as far as a minute leads.
+const MOST_STRIDES: f64 = 1e7;
 
 /// Nodes and weights of the four-point Gauss–Legendre rule on [0, 1] (Abramowitz, Stegun 1964,
 /// table 25.4), as functions of √(6/5) to have them in every arithmetic.
@@ -38,6 +42,18 @@ pub fn kinematic<S: Scalar, R: Recorder>(
     recorder: &mut R,
     watch: Watcher<'_>,
 ) -> Result<RulingCounts, Error<Infallible, R::Error>> {
+    match go(mechanism, schedule, recorder, watch) {
+        Err(Error::System { time, .. }) if halt::is_asked() => Err(Error::Interrupted { time }),
+        gone => gone.map(|()| RulingCounts::default()),
+    }
+}
+
+fn go<S: Scalar, R: Recorder>(
+    mechanism: &mut Mechanism<S>,
+    schedule: &Schedule,
+    recorder: &mut R,
+    watch: Watcher<'_>,
+) -> Result<(), Error<Infallible, R::Error>> {
     let mut now = mechanism.start().clone();
     let fastest = mechanism.fastest_turn().max(1e-300);
     let rule = gauss();
@@ -74,7 +90,7 @@ pub fn kinematic<S: Scalar, R: Recorder>(
         recorder.revolution(&last).map_err(Error::Recorder)?;
     }
     let _ = watch(&progress);
-    Ok(RulingCounts::default())
+    Ok(())
 }
 
 /// Follows the extremes to where the mechanism now stands; leaves it there.
@@ -126,6 +142,14 @@ impl<S: Scalar> Look for Nearby<'_, S> {
     }
 }
 
+/// A time is out of reach.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[error("it is {strides:.1e} strides of 0.05 rad away, of which {MOST_STRIDES:e} are gone")]
+pub struct TooFar {
+    /// Turns of the fastest body on the way, in strides.
+    pub strides: f64,
+}
+
 /// A mechanism without freedom and without clearance, at any time that is asked for.
 #[derive(Debug, Clone)]
 pub struct Assembled<S> {
@@ -163,6 +187,9 @@ impl<S: Scalar> Assembled<S> {
     pub fn observe(&mut self, time: S) -> Result<Observation, Fault> {
         let from = self.now.time;
         let strides = ((time - from).abs().to_f64() / self.stride).ceil().max(1.0);
+        if !(strides <= MOST_STRIDES) {
+            return Err(Fault::Fatal(Box::new(TooFar { strides })));
+        }
         for k in 1..strides as u64 {
             let part = S::from_f64(k as f64 / strides);
             reach(&mut self.mechanism, &mut self.now, from + (time - from) * part)?;

@@ -17,7 +17,7 @@ mod window;
 mod witness;
 
 pub use extremes::LEFT_OUT;
-pub use kinematic::{Assembled, kinematic};
+pub use kinematic::{Assembled, TooFar, kinematic};
 pub use recorder::*;
 pub use schedule::Schedule;
 pub use trajectory::Trajectory;
@@ -25,6 +25,7 @@ pub use witness::Contradiction;
 
 use crate::clearance::{Clearance, EventSlot, Mode};
 use crate::dae::{Advance, Direction, Engine, Fault, Snapshot, State, System};
+use crate::halt;
 use crate::mechanism::Mechanism;
 use crate::scalar::Scalar;
 use extremes::Tracker;
@@ -232,7 +233,13 @@ where
     let closing = run.close();
     // the last word, whether or not it asks to stop
     let _ = watch(&run.progress);
-    going.and(closing).map(|()| run.counts)
+    match going {
+        // whatever stood in the way then was the request
+        Err(Error::Engine { .. } | Error::System { .. }) if halt::is_asked() => {
+            Err(Error::Interrupted { time: run.engine.now().time.to_f64() })
+        }
+        going => going.and(closing).map(|()| run.counts),
+    }
 }
 
 impl<S, E, R> Run<'_, S, E, R>

@@ -7,13 +7,15 @@
 
 use super::{ForeignColumn, ForeignTable, Format, TIME_NAMES, last_word};
 use crate::compare::Error;
-use crate::record::LibraryError;
+use crate::record::{LibraryError, Member, Ration, members};
 use hdf5::types::{IntSize, TypeDescriptor};
-use hdf5::{Dataset, File, Group, MinorErrorCode};
+use hdf5::{Dataset, File, Group, LocationToken, MinorErrorCode};
 use std::path::Path;
 
 /// Groups within groups that are looked into.
 const DEEPEST: usize = 8;
+/// Groups and datasets that are looked at.
+const MOST_OBJECTS: usize = 10_000;
 
 /// An array with one or two sides.
 struct Array {
@@ -104,13 +106,22 @@ pub(super) fn read(path: &Path, format: Format) -> Result<ForeignTable, Error> {
         Error::Library { path: path.to_owned(), source: LibraryError::from(error) }
     };
     let file = File::open(path).map_err(failed)?;
-    let mut arrays = Vec::new();
-    collect(&file, "", format, DEEPEST, &mut arrays).map_err(failed)?;
+    let size = std::fs::metadata(path);
+    let size = size.map_err(|source| Error::Unreadable { path: path.to_owned(), source })?;
+    let mut found = Found {
+        format,
+        ration: Ration::new(size.len()),
+        seen: Vec::new(),
+        arrays: Vec::new(),
+        left_out: Vec::new(),
+    };
+    found.collect(&file, "", DEEPEST).map_err(failed)?;
+    let Found { arrays, left_out, .. } = found;
     let Some(length) = length(&arrays) else {
         return Err(Error::Empty { path: path.to_owned() });
     };
     let columns = arrays.iter().flat_map(|array| array.columns_of(length)).collect();
-    let misfits = arrays.iter().filter_map(|array| array.misfit(length)).collect();
+    let misfits = arrays.iter().filter_map(|array| array.misfit(length)).chain(left_out).collect();
     Ok(ForeignTable { path: path.to_owned(), format, columns, misfits, ends_within_a_line: false })
 }
 
@@ -129,33 +140,56 @@ fn length(arrays: &[Array]) -> Option<usize> {
     })
 }
 
-fn collect(
-    group: &Group,
-    prefix: &str,
+/// What a file is found to hold.
+struct Found {
     format: Format,
-    depth: usize,
-    arrays: &mut Vec<Array>,
-) -> hdf5::Result<()> {
-    let mut names = group.member_names()?;
-    names.sort();
-    // MATLAB keeps what is no plain array under names with #
-    for name in names.iter().filter(|name| !name.starts_with('#')) {
-        let full = if prefix.is_empty() { name.clone() } else { format!("{prefix}.{name}") };
-        if let Ok(dataset) = group.dataset(name) {
-            let octave = name == "value" && names.iter().any(|other| other == "type");
-            let full = if octave { prefix.to_owned() } else { full };
-            let column_major = octave || format == Format::Matlab;
-            arrays.extend(array(&dataset, full, column_major)?);
-        } else if depth > 0
-            && let Ok(inner) = group.group(name)
-        {
+    ration: Ration,
+    /// Groups and datasets that were looked at: a file may lead back to where one has been.
+    seen: Vec<LocationToken>,
+    arrays: Vec<Array>,
+    /// What is not read, with the reason.
+    left_out: Vec<String>,
+}
+
+impl Found {
+    fn collect(&mut self, group: &Group, prefix: &str, depth: usize) -> hdf5::Result<()> {
+        let members = members(group)?;
+        // MATLAB keeps what is no plain array under names with #
+        for (name, member) in members.iter().filter(|(name, _)| !name.starts_with('#')) {
+            let full = if prefix.is_empty() { name.clone() } else { format!("{prefix}.{name}") };
             // the fields of Octave's struct stand in its value
-            let octave = name == "value" && names.iter().any(|other| other == "type");
+            let octave = name == "value" && members.iter().any(|(other, _)| other == "type");
             let full = if octave { prefix.to_owned() } else { full };
-            collect(&inner, &full, format, depth - 1, arrays)?;
+            match *member {
+                Member::Dataset(token) if self.is_new(token) => {
+                    let dataset = group.dataset(name)?;
+                    let column_major = octave || self.format == Format::Matlab;
+                    match self.ration.refuses(&dataset)? {
+                        None => self.arrays.extend(array(&dataset, full, column_major)?),
+                        Some(why) => self.left_out.push(format!("{full:?} (left out: it {why})")),
+                    }
+                }
+                Member::Group(token) if depth > 0 && self.is_new(token) => {
+                    self.collect(&group.group(name)?, &full, depth - 1)?;
+                }
+                Member::Link => {
+                    let why = "it is a link to elsewhere, which is not followed";
+                    self.left_out.push(format!("{full:?} (left out: {why})"));
+                }
+                _ => {}
+            }
         }
+        Ok(())
     }
-    Ok(())
+
+    /// Whether an object was not looked at yet, and few enough were.
+    fn is_new(&mut self, token: LocationToken) -> bool {
+        let new = self.seen.len() < MOST_OBJECTS && !self.seen.contains(&token);
+        if new {
+            self.seen.push(token);
+        }
+        new
+    }
 }
 
 /// An array of numbers with one or two sides; `None` for anything else. Bytes and 16-bit integers

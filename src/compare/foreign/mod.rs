@@ -5,6 +5,7 @@ mod delimited;
 
 use super::Error;
 use super::unit::{Named, named};
+use crate::model::shortened;
 use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -125,7 +126,8 @@ impl ForeignTable {
     pub fn names(&self) -> String {
         const MOST: usize = 40;
         let shown = self.columns.iter().take(MOST);
-        let mut names: Vec<String> = shown.map(|column| format!("\"{}\"", column.name)).collect();
+        let mut names: Vec<String> =
+            shown.map(|column| format!("\"{}\"", shortened(&column.name))).collect();
         if self.columns.len() > MOST {
             names.push(format!("and {} more", self.columns.len() - MOST));
         }

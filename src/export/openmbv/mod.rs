@@ -34,13 +34,11 @@ pub(super) fn write(file: &ResultFile, output: &Path, force: bool) -> Result<Wri
     let scene = Scene::of(&case.description, file)?;
     let rows = rows(&case, &file.times()?);
     let beside = output.with_extension("ombvh5");
-    let text = Draft::create(output, force).map_err(Error::Output)?;
-    let data = Draft::create(&beside, force).map_err(Error::Output)?;
+    let draft = |path| Draft::create_from(path, force, &[file.path()]).map_err(Error::Output);
+    let (text, data) = (draft(output)?, draft(&beside)?);
     motion::write(file, &scene, &rows, data.temporary()).map_err(|error| error.at(&beside))?;
-    std::fs::write(text.temporary(), scene.to_xml(&case.name))
-        .map_err(|error| super::WriteError::write(error).at(output))?;
-    let data = data.publish().map_err(Error::Output)?;
-    let text = text.publish().map_err(Error::Output)?;
+    text.write_bytes(scene.to_xml(&case.name).as_bytes()).map_err(Error::Output)?;
+    let [text, data] = Draft::publish_both(text, data).map_err(Error::Output)?;
     Ok(Written { paths: vec![text, data], rows: rows.len(), columns: scene.things() })
 }
 

@@ -2,7 +2,7 @@
 
 use super::super::WriteError;
 use super::scene::{Arrow, Body, Scene};
-use crate::record::{LibraryError, ResultFile};
+use crate::record::{LibraryError, ResultFile, Written};
 use hdf5::file::LibraryVersion;
 use hdf5::types::VarLenAscii;
 use hdf5::{Extent, File, Group, SimpleExtents};
@@ -32,21 +32,54 @@ pub(super) fn write(
     path: &Path,
 ) -> Result<(), WriteError> {
     let output = create(path).map_err(library)?;
+    let mut written = Written::default();
     let track = Track { file, rows, times: file.times()? };
     {
         let bodies = output.create_group("bodies").map_err(library)?;
         for body in &scene.bodies {
             let motion = track.of_body(body)?;
             put(&bodies, &body.name, &OF_BODY, &motion).map_err(library)?;
+            written.values(&format!("bodies/{}/data", body.name), &flat(&motion));
         }
         let forces = output.create_group("forces").map_err(library)?;
         for arrow in &scene.arrows {
             let motion = track.of_arrow(arrow, scene.top())?;
             put(&forces, &arrow.name, &OF_ARROW, &motion).map_err(library)?;
+            written.values(&format!("forces/{}/data", arrow.name), &flat(&motion));
         }
     }
     output.flush().map_err(library)?;
-    output.close().map_err(library)
+    output.close().map_err(library)?;
+    match written.missing(path).or_else(|| unlabelled(path, scene)) {
+        Some(what) => Err(WriteError::write(NotAsWritten { what })),
+        None => Ok(()),
+    }
+}
+
+/// The first thing whose columns have lost their labels in a closed file.
+fn unlabelled(path: &Path, scene: &Scene) -> Option<String> {
+    let bodies = scene.bodies.iter().map(|body| (format!("bodies/{}/data", body.name), OF_BODY));
+    let arrows = scene.arrows.iter();
+    let arrows = arrows.map(|arrow| (format!("forces/{}/data", arrow.name), OF_ARROW));
+    let file = File::with_options().with_fapl(|access| access.file_locking(false)).open(path);
+    let has = |name: &str, labels: [&str; 8]| {
+        let data = file.as_ref().map_err(Clone::clone)?.dataset(name)?;
+        let read = data.attr("Column Label")?.read_raw::<VarLenAscii>()?;
+        Ok::<_, hdf5::Error>(read.iter().map(VarLenAscii::as_str).eq(labels))
+    };
+    let mut all = bodies.chain(arrows);
+    all.find(|(name, labels)| !has(name, *labels).unwrap_or(false)).map(|(name, _)| name)
+}
+
+/// What was read back is not what was written.
+#[derive(Debug, thiserror::Error)]
+#[error("{what} came back from the disk otherwise than it was written")]
+struct NotAsWritten {
+    what: String,
+}
+
+fn flat(motion: &Array2<f64>) -> Vec<f64> {
+    motion.iter().copied().collect()
 }
 
 fn library(error: hdf5::Error) -> WriteError {
@@ -57,7 +90,10 @@ fn library(error: hdf5::Error) -> WriteError {
 /// layout of its release 1.10.
 fn create(path: &Path) -> hdf5::Result<File> {
     File::with_options()
-        .with_fapl(|access| access.libver_bounds(LibraryVersion::V110, LibraryVersion::V110))
+        .with_fapl(|access| {
+            let access = access.libver_bounds(LibraryVersion::V110, LibraryVersion::V110);
+            access.file_locking(false) // its name is known to nobody yet
+        })
         .with_fcpl(|creation| creation.obj_track_times(false))
         .create(path)
 }

@@ -100,7 +100,7 @@ impl Scene {
         let mut xml = Xml::default();
         xml.line("<?xml version=\"1.0\" encoding=\"UTF-8\"?>");
         let namespace = "http://www.mbsim-env.de/OpenMBV";
-        xml.open("Group", &format!("name=\"{name}\" xmlns=\"{namespace}\""));
+        xml.open("Group", &format!("name=\"{}\" xmlns=\"{namespace}\"", escaped(name)));
         xml.open("Group", "name=\"bodies\"");
         for (k, body) in self.bodies.iter().enumerate() {
             self.body(&mut xml, k, body);
@@ -116,7 +116,7 @@ impl Scene {
     }
 
     fn body(&self, xml: &mut Xml, layer: usize, body: &Body) {
-        xml.open("CompoundRigidBody", &format!("name=\"{}\"", body.name));
+        xml.open("CompoundRigidBody", &format!("name=\"{}\"", escaped(&body.name)));
         // hue, saturation, value: the ground grey, the bodies round the wheel
         let hue = (layer as f64 * 0.381_966) % 1.0;
         let colour = if body.index.is_some() { [hue, 0.6, 0.9] } else { [0.0, 0.0, 0.5] };
@@ -125,7 +125,7 @@ impl Scene {
         xml.vector("initialRotation", &[0.0; 3]);
         xml.number("scaleFactor", 1.0);
         for shape in &body.shapes {
-            xml.open("Extrusion", &format!("name=\"{}\"", shape.name));
+            xml.open("Extrusion", &format!("name=\"{}\"", escaped(&shape.name)));
             xml.vector("initialTranslation", &[0.0, 0.0, LAYER * self.half_width * layer as f64]);
             xml.vector("initialRotation", &[0.0; 3]);
             xml.number("scaleFactor", 1.0);
@@ -142,7 +142,7 @@ impl Scene {
     }
 
     fn arrow(&self, xml: &mut Xml, arrow: &Arrow) {
-        xml.open("Arrow", &format!("name=\"{}\"", arrow.name));
+        xml.open("Arrow", &format!("name=\"{}\"", escaped(&arrow.name)));
         xml.vector("diffuseColor", &[0.0, 1.0, 0.8]);
         xml.number("diameter", 0.4 * self.half_width);
         xml.number("headDiameter", self.half_width);
@@ -277,4 +277,31 @@ fn largest_force(file: &ResultFile) -> Result<f64, Error> {
     let (x, y) = (file.table("joint_force_x")?, file.table("joint_force_y")?);
     let forces = x.values.iter().zip(&y.values).map(|(x, y)| x.hypot(*y));
     Ok(forces.filter(|force| force.is_finite()).fold(0.0, f64::max))
+}
+
+/// Text as it stands between the quotes of an attribute.
+fn escaped(text: &str) -> String {
+    let mut escaped = String::new();
+    for c in text.chars() {
+        match c {
+            '&' => escaped.push_str("&amp;"),
+            '<' => escaped.push_str("&lt;"),
+            '>' => escaped.push_str("&gt;"),
+            '"' => escaped.push_str("&quot;"),
+            // XML has no way to write the others
+            c if c.is_control() => escaped.push('\u{fffd}'),
+            c => escaped.push(c),
+        }
+    }
+    escaped
+}
+
+#[cfg(test)]
+mod tests {
+    use super::escaped;
+
+    #[test]
+    fn a_name_cannot_leave_its_attribute() {
+        assert_eq!(escaped("a\" b=\"<&>\n"), "a&quot; b=&quot;&lt;&amp;&gt;\u{fffd}");
+    }
 }
