@@ -473,7 +473,7 @@ fn the_summary_has_the_known_maxima_of_the_ideal_mechanism() {
 #[test]
 fn the_same_files_give_the_same_page_to_the_byte() {
     let path = simulate("four-bar-a", "twice", &["run.duration=0.002"]);
-    let page = || Report::new(&[ResultFile::open(&path).unwrap()]).unwrap();
+    let page = || Report::new(&[ResultFile::open(&path).unwrap()], &[]).unwrap();
     assert_eq!(page(), page());
 }
 
