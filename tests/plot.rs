@@ -295,6 +295,66 @@ fn runs_are_called_by_their_labels_and_share_a_panel_if_asked_to() {
 }
 
 #[test]
+fn torques_that_a_peak_would_flatten_have_a_logarithmic_axis_that_says_so() {
+    let folder = folder();
+    let svg = |peak: f64| {
+        let mut recorded = Recorded::new(&["A"], 200, 0);
+        for (row, observation) in recorded.observations.iter_mut().enumerate() {
+            observation.drive_torques[0] = (0.1 * row as f64).sin();
+        }
+        recorded.observations[120].drive_torques[0] = peak;
+        let file = opened(folder.path(), &format!("{peak}.h5"), &recorded);
+        let figures = draw(vec![file], &Options::default()).unwrap();
+        figures.into_iter().find(|figure| figure.name == "torque-crank").unwrap().svg
+    };
+    let (even, peaked) = (svg(15.0), svg(-400.0));
+    assert!(!even.contains("logarithmic"));
+    for words in [">logarithmic beyond ±1 N\u{a0}m<", ">−100<", ">−10<", ">−1<", ">0<", ">1<"]
+    {
+        assert_eq!(peaked.matches(words).count(), 1, "{words}");
+    }
+}
+
+#[test]
+fn a_path_along_the_wall_is_enlarged_and_others_are_not() {
+    let folder = folder();
+    let figures = folder.path().join("figures");
+    let path = |case: &str| {
+        let file = run(folder.path(), case);
+        let plotted = plot(&[&file], &figures, &["--only", "journal-path", "--force"]);
+        assert!(plotted.status.success(), "{plotted:?}");
+        std::fs::read_to_string(figures.join("journal-path.svg")).unwrap()
+    };
+    // 1.2 µm beyond a wall of 1 mm
+    let wall = path("journal-in-bearing");
+    for words in [">× 100<", ">2 µm<", "overflow=\"hidden\""] {
+        assert_eq!(wall.matches(words).count(), 1, "{words}");
+    }
+    let free = path("four-bar-a");
+    assert!(!free.contains(">× ") && !free.contains("overflow"));
+}
+
+#[test]
+fn figures_of_many_runs_or_joints_break_over_columns_and_are_no_taller_than_a_page() {
+    let folder = folder();
+    let names: Vec<String> = (1..=40).map(|k| format!("J{k}")).collect();
+    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+    let many = opened(folder.path(), "many.h5", &Recorded::new(&names, 5, 80));
+    let runs = (0..8)
+        .map(|k| opened(folder.path(), &format!("run{k}.h5"), &Recorded::new(&["A"], 30, 10)));
+    for (files, pages) in [(vec![many], [1, 3]), (runs.collect(), [1, 1])] {
+        let figures = draw(files, &Options::default()).unwrap();
+        for figure in &figures {
+            assert!(figure.size[1] <= 230.0, "{} is {} mm tall", figure.name, figure.size[1]);
+        }
+        let count = |kind| figures.iter().filter(|figure| figure.kind == kind).count();
+        assert_eq!([count("contact-timeline"), count("journal-path")], pages);
+        let torques: Vec<_> = figures.iter().filter(|figure| figure.kind == "torque").collect();
+        assert_eq!(torques.len(), 1, "runs stand in two columns of one page");
+    }
+}
+
+#[test]
 fn files_of_one_name_are_told_apart_by_their_folders() {
     let folder = folder();
     let files = ["soft", "stiff"].map(|name| {

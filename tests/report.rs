@@ -165,11 +165,11 @@ fn largest_peak(file: &ResultFile, clearance: usize) -> (f64, f64) {
     (largest.time, largest.force)
 }
 
-/// A number as the page shows it, in its base unit: `−1914.21 10³ rad/s²`.
+/// A number as the page shows it, in its base unit: `−1914.21 × 10³ rad/s²`.
 fn value_of(text: &str) -> f64 {
     let (number, unit) = text.split_once(' ').unwrap_or((text, ""));
     let number: f64 = number.replace('−', "-").parse().unwrap_or(f64::NAN);
-    let prefixes = [("10³ ", 1e3), ("k", 1e3), ("m", 1e-3), ("µ", 1e-6), ("n", 1e-9)];
+    let prefixes = [("× 10³ ", 1e3), ("k", 1e3), ("m", 1e-3), ("µ", 1e-6), ("n", 1e-9)];
     let base = ["N", "N m", "m", "J", "rad/s", "rad/s²"];
     if base.contains(&unit) {
         return number;
@@ -359,6 +359,144 @@ fn a_click_sets_the_time_of_everything() {
 }
 
 #[test]
+fn a_link_carries_the_zoom_and_the_axis_of_the_charts() {
+    let zoom = &seen().told["zoomLink"];
+    for stretch in zoom["stretches"].as_array().unwrap() {
+        assert_eq!(numbers(stretch), [10.0, 20.0]);
+    }
+    assert_eq!(text(&zoom["address"]), "#t=12.53&run=four-bar-c&from=10&to=20");
+    assert_eq!(text(&zoom["told"]), "10.00 to 20.00 ms");
+    let angle = &seen().told["overAngle"];
+    assert_eq!(text(&angle["address"]), "#t=12.53&run=four-bar-c&from=10&to=20&over=angle");
+    assert_eq!(angle["followed"], angle["stretches"], "a link leads to the axis");
+}
+
+#[test]
+fn over_the_crank_angle_charts_show_the_same_moments() {
+    let angle = &seen().told["overAngle"];
+    // 5000 rpm: 30° a millisecond.
+    let about = |stretch: &Value, ends: [f64; 2]| {
+        for (end, expected) in numbers(stretch).into_iter().zip(ends) {
+            assert_near(end, expected, 1e-3);
+        }
+    };
+    for stretch in angle["stretches"].as_array().unwrap() {
+        about(stretch, [300.0, 600.0]);
+    }
+    let pixel = number(&angle["pixel"]);
+    for cursor in numbers(&angle["cursors"]) {
+        assert_near(cursor, 30.0 * 12.53, pixel);
+    }
+    assert_near(number(&angle["clicked"]), 12.5, pixel / 30.0 * 1.5);
+    assert_eq!(angle["readings"], seen().told["link"]["readings"]);
+    about(&angle["whole"], [0.0, 1800.0]);
+    let others = &seen().told["others"];
+    assert_eq!(others["friction"]["overAngle"], true);
+    assert_eq!(others["pendulum"]["overAngle"], false, "nothing drives it");
+}
+
+#[test]
+fn arrows_end_at_the_border_of_the_stage_with_their_values() {
+    let arrows = &seen().told["arrows"];
+    let within = |place: &Value, size: &Value| {
+        let (low, high) = (number(&place[0]), number(&place[1]));
+        low >= -3.0 && high <= number(size) + 3.0
+    };
+    assert!(within(&arrows["across"], &arrows["width"]), "{arrows}");
+    assert!(within(&arrows["down"], &arrows["height"]), "{arrows}");
+    let values = |name: &str| -> Vec<f64> {
+        let all = arrows[name].as_array().unwrap().iter();
+        all.map(|label| value_of(text(&label["text"]))).collect()
+    };
+    assert!(values("before").is_empty(), "arrows that end inside have no values");
+    let file = seen().file("four-bar-c");
+    let row = file.times().unwrap().iter().position(|t| (t - MOMENT).abs() < 1e-12).unwrap();
+    let force = column_of(file, "chart-force", "A")[row];
+    let near = |value: &f64| (value - force).abs() < 0.01 * force;
+    assert!(values("after").iter().any(near), "{arrows} has no {force}");
+    for label in arrows["after"].as_array().unwrap() {
+        let half = 0.5 * number(&label["width"]);
+        let [x, y] = ["x", "y"].map(|name| number(&label[name]));
+        assert!(x - half >= 0.0 && x + half <= number(&arrows["width"]), "{label}");
+        assert!(y >= 5.0 && y <= number(&arrows["height"]) - 5.0, "{label}");
+    }
+}
+
+#[test]
+fn the_paths_of_the_journals_follow_the_zoom_and_the_time() {
+    let paths = &seen().told["paths"];
+    assert_ne!(paths["whole"], paths["zoomed"]);
+    assert_ne!(paths["zoomed"], paths["moved"]);
+    assert!(text(&paths["words"]).contains("In the stretch that the charts show"));
+    assert_eq!(seen().told["others"]["pendulum"]["paths"], false, "it has no journal");
+    assert_eq!(seen().told["others"]["journal"]["paths"], true);
+}
+
+#[test]
+fn the_motion_is_saved_as_a_picture_and_as_a_film() {
+    let saved = &seen().told["saved"];
+    assert_eq!(text(&saved["picture"]["name"]), "four-bar-c-12.0000-ms.png");
+    assert!(text(&saved["picture"]["head"]).starts_with("89504e470d0a1a0a"));
+    assert_eq!(text(&saved["film"]["name"]), "four-bar-c-12.0000-to-13.0000-ms.webm");
+    assert!(text(&saved["film"]["head"]).starts_with("1a45dfa3"), "{saved}");
+    // The last moment of the film is another than the first, and both are pictures.
+    let played = &saved["played"];
+    assert_eq!(played["width"], saved["picture"]["width"]);
+    assert_ne!(played["first"], played["last"]);
+    assert!(number(&played["seconds"]) > 0.5, "{played}");
+    assert_eq!(text(&saved["button"]), "Film (WebM)");
+}
+
+#[test]
+fn what_fingers_press_is_large_enough() {
+    let touch = &seen().told["touch"];
+    assert!(number(&touch["count"]) > 40.0, "{touch}");
+    assert_eq!(touch["small"], serde_json::json!([]));
+    assert!(number(&touch["overflow"]) <= 0.0, "{touch}");
+}
+
+#[test]
+fn powers_of_ten_are_written_as_print_has_them() {
+    let powers = &seen().told["powers"];
+    assert_eq!(powers["computers"], serde_json::json!([]));
+    let words = text(&powers["words"]);
+    assert!(words.contains("× 10³ rad/s²") && words.contains("10−12"), "{words}");
+}
+
+#[test]
+fn runs_have_the_names_that_they_are_given_or_their_folders() {
+    let folder = tempfile::tempdir().unwrap();
+    let result = simulate("four-bar-a", "labelled", &["run.duration=0.001"]);
+    let results = ["soft", "stiff"].map(|name| {
+        std::fs::create_dir(folder.path().join(name)).unwrap();
+        let copy = folder.path().join(name).join("run.h5");
+        std::fs::copy(&result, &copy).unwrap();
+        copy.to_str().unwrap().to_owned()
+    });
+    let page = folder.path().join("page.html");
+    let report = |more: &[&str]| {
+        let mut arguments = vec!["report", &results[0], &results[1], "--force"];
+        arguments.extend(["-o", page.to_str().unwrap()]);
+        arguments.extend(more);
+        freeplay(&arguments)
+    };
+    assert!(report(&[]).status.success());
+    let html = std::fs::read_to_string(&page).unwrap();
+    assert!(html.contains("<h1>soft/run, stiff/run</h1>"));
+    assert!(report(&["--label", "c = 1 mm", "--label", "<c>"]).status.success());
+    let html = std::fs::read_to_string(&page).unwrap();
+    assert!(html.contains("<h1>c = 1 mm, &lt;c&gt;</h1>"));
+    for (labels, words) in [
+        (&["--label", "one"][..], "labels 1, files 2"),
+        (&["--label", "one", "--label", "one"], "two files have the label \"one\""),
+    ] {
+        let refused = report(labels);
+        assert_eq!(refused.status.code(), Some(2), "{refused:?}");
+        assert!(String::from_utf8_lossy(&refused.stderr).contains(words), "{refused:?}");
+    }
+}
+
+#[test]
 fn a_drag_zooms_all_charts_and_a_double_click_shows_the_whole_run() {
     let drag = &seen().told["drag"];
     let (pixel, expected) = (number(&drag["pixel"]), numbers(&drag["expected"]));
@@ -473,7 +611,7 @@ fn the_summary_has_the_known_maxima_of_the_ideal_mechanism() {
 #[test]
 fn the_same_files_give_the_same_page_to_the_byte() {
     let path = simulate("four-bar-a", "twice", &["run.duration=0.002"]);
-    let page = || Report::new(&[ResultFile::open(&path).unwrap()]).unwrap();
+    let page = || Report::new(&[ResultFile::open(&path).unwrap()], &[]).unwrap();
     assert_eq!(page(), page());
 }
 

@@ -14,6 +14,9 @@ pub struct Arguments {
     /// Page to write (HTML).
     #[arg(short, long, value_name = "PAGE", default_value = "report.html")]
     output: PathBuf,
+    /// What a run is called; once for each file, in their order.
+    #[arg(long, value_name = "NAME")]
+    label: Vec<String>,
     /// Replace the output if it exists.
     #[arg(long)]
     force: bool,
@@ -28,7 +31,7 @@ pub(super) fn report(arguments: &Arguments) -> Result<(), Failure> {
         .map(|path| ResultFile::open(path))
         .collect::<Result<_, _>>()
         .map_err(Failure::input)?;
-    let report = Report::new(&files).map_err(Failure::input)?;
+    let report = Report::new(&files, &arguments.label).map_err(Failure::input)?;
     report.write(&arguments.output, arguments.force).map_err(Failure::output)?;
     let runs = if files.len() == 1 { "1 run".to_owned() } else { format!("{} runs", files.len()) };
     let size = report.html().len() as f64 / 1e6;

@@ -1,7 +1,7 @@
 //! Clearance vector of each joint over time (the paper's figure 4): its components, and its
 //! length, the eccentricity.
 
-use super::over_time::{Curve, MOST_ROWS, beyond, column, time_axis};
+use super::over_time::{Curve, MOST_PANELS, beyond, column, time_axis};
 use super::palette::{BLUE, GUIDE, RUN, VERMILLION};
 use super::panel::{Axis, Mark, Panel, Sample};
 use super::runs::{Run, Runs};
@@ -93,5 +93,5 @@ fn sheets(
         }
         column(panels)
     };
-    panels.chunks(MOST_ROWS).map(page).collect()
+    panels.chunks(MOST_PANELS).map(page).collect()
 }

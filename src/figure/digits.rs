@@ -2,7 +2,7 @@
 //! was held against it or that its companion estimates, and those that errors of double precision
 //! leave.
 
-use super::over_time::{Curve, column, time_axis};
+use super::over_time::{Curve, MOST_PANELS, column, time_axis};
 use super::palette::{BLACK, BLUE, GREEN, VERMILLION};
 use super::panel::{Axis, Choice, Mark, Panel, Sample, range_of};
 use super::quantity::Unit;
@@ -35,7 +35,7 @@ pub(super) fn draw(runs: &Runs, figures: &mut Figures<'_>) -> Result<(), Error> 
             panels.push(panel(&run.name, &x, curves));
         }
     }
-    let sheets = panels.chunks(super::over_time::MOST_ROWS).map(|panels| column(panels.to_vec()));
+    let sheets = panels.chunks(MOST_PANELS).map(|panels| column(panels.to_vec()));
     figures.add("digits", None, "True digits", sheets.collect());
     Ok(())
 }

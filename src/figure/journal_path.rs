@@ -1,7 +1,10 @@
-//! Path of the journal's centre in the circle of the clearance.
+//! Path of the journal's centre in the circle of the clearance; where it hardly leaves that circle,
+//! a piece of it enlarged.
 
 use super::decimate::Point;
+use super::flattened::{FLAT, usual};
 use super::grid::{by_run_and_joint, tell_once};
+use super::inset::{INSET, Inset, pieces, round_down};
 use super::over_time::beyond_path;
 use super::palette::{BEYOND_PATH, BLACK, BLUE};
 use super::panel::{Axis, Choice, Mark, Panel};
@@ -15,7 +18,7 @@ use super::{Error, Figures};
 /// Draws one figure with a panel for each joint of each run.
 pub(super) fn draw(runs: &Runs, figures: &mut Figures<'_>) -> Result<(), Error> {
     let mut sheets = by_run_and_joint(runs, 1.0, |run, joint, index| {
-        let (path, known) = path(run, index)?;
+        let Path { times, points: path, known } = path(run, index)?;
         let mut marks = Vec::new();
         if known < path.len() {
             // the line between them belongs to what is beyond
@@ -24,6 +27,10 @@ pub(super) fn draw(runs: &Runs, figures: &mut Figures<'_>) -> Result<(), Error> 
         }
         marks.push(Mark::Path(path[..known].to_vec(), Stroke::solid(BLUE, 0.4)));
         let mut panel = in_the_circle(run, joint, index, &path, marks)?;
+        if let Some(radial) = run.radial_clearance(index)? {
+            let inset = enlarged(&times, &path, radial, &panel);
+            panel.marks.extend(inset.map(Mark::Inset));
+        }
         panel.legend.extend((known < path.len()).then(beyond_path));
         Ok(Some(panel))
     })?;
@@ -32,21 +39,32 @@ pub(super) fn draw(runs: &Runs, figures: &mut Figures<'_>) -> Result<(), Error> 
     Ok(())
 }
 
-/// Centre of the journal relative to that of the bearing (m) at all samples, and as often between
-/// them as a smooth curve needs: its distance is that of the clearance's history, its direction
-/// that of a cubic through the samples. Beside it the number of points before the horizon.
-fn path(run: &Run, clearance: usize) -> Result<(Vec<Point>, usize), Error> {
+/// The way of a journal.
+struct Path {
+    /// Times of its points (s).
+    times: Vec<f64>,
+    /// Centre of the journal relative to that of the bearing (m).
+    points: Vec<Point>,
+    /// Number of points before the horizon.
+    known: usize,
+}
+
+/// Where the journal is at all samples, and as often between them as a smooth curve needs: its
+/// distance is that of the clearance's history, its direction that of a cubic through the samples.
+fn path(run: &Run, clearance: usize) -> Result<Path, Error> {
     let x = run.samples("clearance_x")?.column(clearance);
     let y = run.samples("clearance_y")?.column(clearance);
     let ends = run.state_ends().unwrap_or(f64::INFINITY);
     let Some(radial) = run.radial_clearance(clearance)? else {
         let known = run.times.partition_point(|time| *time <= ends);
-        return Ok((x.into_iter().zip(y).map(|(x, y)| [x, y]).collect(), known));
+        let points = x.into_iter().zip(y).map(|(x, y)| [x, y]).collect();
+        return Ok(Path { times: run.times.clone(), points, known });
     };
-    let (mut points, mut known) = (Vec::new(), 0);
+    let (mut times, mut points, mut known) = (Vec::new(), Vec::new(), 0);
     let mut sample = 0;
     for moment in history(run, clearance)? {
         known += usize::from(moment.time <= ends);
+        times.push(moment.time);
         while run.times.get(sample + 1).is_some_and(|next| *next <= moment.time) {
             sample += 1;
         }
@@ -58,7 +76,43 @@ fn path(run: &Run, clearance: usize) -> Result<(Vec<Point>, usize), Error> {
         let scale = (radial + moment.depth) / x.hypot(y);
         points.push([scale * x, scale * y]);
     }
-    Ok((points, known))
+    Ok(Path { times, points, known })
+}
+
+/// Share of the panel below which nothing is enlarged: rounding errors.
+const NOTHING: f64 = 1e-7;
+/// What is enlarged reaches so many times as far as the journal is usually off the wall.
+const REACH: f64 = 2.5;
+
+/// A piece of the wall with the path beside it, where the path is usually nearer to the wall than
+/// anybody could see; the whole circle, where that is small beside the path's excursions.
+fn enlarged(times: &[f64], path: &[Point], radial: f64, panel: &Panel) -> Option<Inset> {
+    let far = panel.x.range[1];
+    let off = |[x, y]: Point| (x.hypot(y) - radial).abs();
+    let weighted = path.iter().zip(times.windows(2)).map(|(p, t)| (off(*p), t[1] - t[0]));
+    let spread = usual(weighted).filter(|off| FLAT * off < far && *off > NOTHING * far)?;
+    let whole = REACH * spread > radial;
+    let (centre, half) = match whole {
+        true => ([0.0; 2], 1.2 * (radial + spread)),
+        false => {
+            let usually = path.iter().copied().filter(|point| off(*point) <= spread);
+            let point = usually.max_by(|a, b| off(*a).total_cmp(&off(*b)))?;
+            (point, REACH * spread)
+        }
+    };
+    // enlarged by a round number
+    let half = INSET * far / round_down(INSET * far / half);
+    let away = if whole { 0.55 } else { -0.15 };
+    let direction = match centre[0].hypot(centre[1]) {
+        0.0 => [0.7; 2],
+        distance => centre.map(|value| value / distance),
+    };
+    Some(Inset {
+        centre,
+        half,
+        place: direction.map(|value| away * far * value),
+        marks: pieces(&panel.marks, centre, half),
+    })
 }
 
 /// Value between sample `k` and the next of a cubic with the slopes of parabolas through three
@@ -105,7 +159,7 @@ pub(super) fn in_the_circle(
 
 #[cfg(test)]
 mod tests {
-    use super::through;
+    use super::*;
 
     #[test]
     fn a_parabola_is_met_between_uneven_samples() {

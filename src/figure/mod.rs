@@ -15,10 +15,12 @@ mod digits;
 mod drive_torque;
 mod encode;
 mod energy;
+mod flattened;
 mod fonts;
 mod force;
 mod grid;
 mod ink;
+mod inset;
 mod journal_path;
 mod over_time;
 mod palette;
@@ -57,14 +59,6 @@ pub enum Error {
         from: f64,
         /// Its end (s).
         until: f64,
-    },
-    /// There are not as many labels as files.
-    #[error("each file needs one label, in their order: labels {labels}, files {files}")]
-    Labels {
-        /// Number of labels.
-        labels: usize,
-        /// Number of files.
-        files: usize,
     },
     /// A drive's angle is asked for, and the file does not tell it.
     #[error("{} tells no angle of a drive: {what}", path.display())]

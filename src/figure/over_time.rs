@@ -2,7 +2,8 @@
 
 use super::Over;
 use super::decimate::Point;
-use super::palette::{BEYOND, BEYOND_PATH, IDEAL, OVERLAID, RUN};
+use super::flattened::bends_at;
+use super::palette::{BEND, BEYOND, BEYOND_PATH, IDEAL, OVERLAID, RUN};
 use super::panel::{Axis, Choice, Mark, Panel, Sample, zero_line};
 use super::quantity::Unit;
 use super::runs::{Run, Runs};
@@ -13,6 +14,8 @@ use crate::mechanism::Measure;
 
 /// Most panels under each other.
 pub(super) const MOST_ROWS: usize = 6;
+/// Most panels of a page, in two columns.
+pub(super) const MOST_PANELS: usize = 2 * MOST_ROWS;
 
 /// A curve and the name of its run.
 #[derive(Debug, Clone)]
@@ -67,8 +70,9 @@ pub(super) fn time_axis(runs: &Runs, over: Over) -> Axis {
     }
 }
 
-/// Panels of one quantity of one part of the mechanism, a run each, with the ideal mechanism's curve in all of them. All have
-/// the same axes, so that heights compare. With `overlay` the runs share a panel.
+/// Panels of one quantity of one part of the mechanism, a run each, with the ideal mechanism's curve
+/// in all of them. All have the same axes, so that heights compare; where one curve would flatten
+/// another these are logarithmic at their ends. With `overlay` the runs share a panel.
 pub(super) fn stack(
     overlay: bool,
     x: &Axis,
@@ -78,11 +82,16 @@ pub(super) fn stack(
     curves: &[Curve],
     ideal: Option<&Curve>,
 ) -> Vec<Sheet> {
-    let everything = curves.iter().chain(ideal).flat_map(|curve| &curve.points);
-    let y = Axis::fitting(title.clone(), unit, everything.map(|point| point[1]));
+    let everything = || curves.iter().chain(ideal);
+    let values = everything().flat_map(|curve| &curve.points).map(|point| point[1]);
+    let bends = bends_at(everything().map(|curve| curve.points.as_slice()));
+    let y = match bends {
+        Some(beyond) => Axis::bent(title.clone(), unit, values, beyond),
+        None => Axis::fitting(title.clone(), unit, values),
+    };
     let panel = |curve: &Curve| {
         let mut marks: Vec<Mark> = curve.beyond.map(Mark::Beyond).into_iter().collect();
-        marks.extend(zero_line(y.range));
+        marks.extend(levels(&y));
         marks.push(Mark::Curve(curve.points.clone(), RUN));
         marks.extend(ideal.map(|ideal| Mark::Curve(ideal.points.clone(), IDEAL)));
         Panel {
@@ -95,7 +104,11 @@ pub(super) fn stack(
     };
     let legend = ideal.map(|ideal| (Sample::Line(IDEAL), Text::roman(&ideal.run)));
     if overlay && curves.len() > 1 {
-        let page = |curves: &[Curve]| column(vec![overlaid(x, &y, part, curves, ideal)]);
+        let page = |curves: &[Curve]| {
+            let mut panel = overlaid(x, &y, part, curves, ideal);
+            panel.legend.extend(bends.map(|beyond| bend(beyond, &y.unit)));
+            column(vec![panel])
+        };
         return curves.chunks(OVERLAID.len()).map(page).collect();
     }
     let page = |curves: &[Curve]| {
@@ -103,10 +116,11 @@ pub(super) fn stack(
         if let Some(first) = panels.first_mut() {
             first.legend = legend.clone().into_iter().collect();
             first.legend.extend(curves.iter().find_map(|curve| curve.beyond).map(|_| beyond()));
+            first.legend.extend(bends.map(|beyond| bend(beyond, &y.unit)));
         }
         column(panels)
     };
-    curves.chunks(MOST_ROWS).map(page).collect()
+    curves.chunks(MOST_PANELS).map(page).collect()
 }
 
 /// A panel with the curves of several runs; the first lies on top. Grey is what lies beyond the
@@ -117,7 +131,7 @@ fn overlaid(x: &Axis, y: &Axis, part: &str, curves: &[Curve], ideal: Option<&Cur
     let mut marks: Vec<Mark> =
         curves.iter().filter_map(|curve| curve.beyond).map(Mark::Beyond).collect();
     let grey = (!marks.is_empty()).then(beyond);
-    marks.extend(zero_line(y.range));
+    marks.extend(levels(y));
     let drawn = of_runs.iter().rev().copied().chain(ideal.map(|ideal| (ideal, IDEAL)));
     marks.extend(drawn.map(|(curve, stroke)| Mark::Curve(curve.points.clone(), stroke)));
     let lines = all().map(|(c, stroke)| (Sample::Line(stroke), Text::roman(&c.run)));
@@ -130,6 +144,23 @@ fn overlaid(x: &Axis, y: &Axis, part: &str, curves: &[Curve], ideal: Option<&Cur
     }
 }
 
+/// Lines at zero, and where an axis goes from linear to logarithmic.
+fn levels(y: &Axis) -> Vec<Mark> {
+    let mut marks: Vec<Mark> = zero_line(y.range).into_iter().collect();
+    if let Choice::Bent(beyond) = y.ticks {
+        let inside = |height: &f64| y.range[0] < *height && *height < y.range[1];
+        let bends = [-beyond, beyond].into_iter().filter(inside);
+        marks.extend(bends.map(|height| Mark::Level(height, BEND)));
+    }
+    marks
+}
+
+/// The entry of a legend that says where an axis goes from linear to logarithmic.
+fn bend(beyond: f64, unit: &Unit) -> (Sample, Text) {
+    let value = (beyond / unit.size * 1e9).round() / 1e9;
+    (Sample::Line(BEND), unit.after(&format!("logarithmic beyond ±{value}")))
+}
+
 /// The entry of a legend for what lies beyond the horizon of a run.
 pub(super) fn beyond() -> (Sample, Text) {
     (Sample::Bar(BEYOND), Text::roman("beyond the horizon"))
@@ -140,14 +171,19 @@ pub(super) fn beyond_path() -> (Sample, Text) {
     (Sample::Line(Stroke::solid(BEYOND_PATH, 0.9)), Text::roman("beyond the horizon"))
 }
 
-/// Panels under each other over one horizontal axis.
+/// Panels under each other over one horizontal axis; in two columns if one would be too tall.
 pub(super) fn column(mut panels: Vec<Panel>) -> Sheet {
     letter(panels.iter_mut());
     let height = if panels.len() == 1 { 140.0 } else { 85.0 };
+    let rows = panels.len().div_ceil(if panels.len() > MOST_ROWS { 2 } else { 1 });
+    let mut places: Vec<Vec<Option<Panel>>> = vec![Vec::new(); rows];
+    for (k, panel) in panels.into_iter().enumerate() {
+        places[k % rows].push(Some(panel));
+    }
     Sheet {
         width: DOUBLE_COLUMN,
-        heights: vec![Height::Points(height); panels.len()],
-        rows: panels.into_iter().map(|panel| vec![Some(panel)]).collect(),
+        heights: vec![Height::Points(height); rows],
+        rows: places,
         shared_x: true,
     }
 }

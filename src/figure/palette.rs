@@ -31,6 +31,8 @@ pub(super) const BEYOND_PATH: &str = "#bdbdbd";
 pub(super) const FRAME: Stroke = Stroke::solid(BLACK, 0.5);
 /// Lines that only guide the eye.
 pub(super) const GUIDE: Stroke = Stroke::solid(GREY, 0.4);
+/// Where an axis goes from linear to logarithmic.
+pub(super) const BEND: Stroke = Stroke::dashed(GREY, 0.5);
 /// The curve of a run.
 pub(super) const RUN: Stroke = Stroke::solid(BLUE, 0.7);
 /// Curves of runs that share a panel, the first on top.

@@ -2,6 +2,7 @@
 
 use super::decimate::{Point, by_columns, by_distance};
 use super::ink::without_covered;
+use super::inset::Inset;
 use super::palette::{BEYOND, FRAME};
 use super::quantity::Unit;
 use super::svg::{Anchor, Stroke, Svg};
@@ -49,6 +50,9 @@ pub(super) enum Choice {
     Degrees,
     /// Whole numbers only have labels: names at 0, 1, 2 …, from the top down.
     Names(Vec<String>),
+    /// Powers of ten of both signs: logarithmic beyond this value (in SI units), linear between it
+    /// and its negative, as high as a decade each.
+    Bent(f64),
 }
 
 impl Axis {
@@ -65,6 +69,29 @@ impl Axis {
         Axis { title, unit, range, ticks: Choice::Decimal }
     }
 
+    /// An axis that is logarithmic beyond a value, with room for all values.
+    pub fn bent(
+        title: Text,
+        unit: &str,
+        values: impl IntoIterator<Item = f64>,
+        beyond: f64,
+    ) -> Self {
+        let ends = range_of(values).map(|ends| ends.map(|end| bent(end / beyond)));
+        let range = with_room(ends).map(|end| beyond * straight(end));
+        let unit = Unit::fitting(unit, range[0].abs().max(range[1].abs()));
+        Axis { title, unit, range, ticks: Choice::Bent(beyond) }
+    }
+
+    /// Where a value is on the axis, from 0 at its low end to 1 at its high one.
+    fn share(&self, value: f64) -> f64 {
+        let place = |value: f64| match &self.ticks {
+            Choice::Bent(beyond) => bent(value / beyond),
+            _ => value,
+        };
+        let [low, high] = self.range.map(place);
+        (place(value) - low) / (high - low)
+    }
+
     /// Ticks that suit a length on the page (pt), `spacing` apart at least.
     pub fn ticks(&self, length: f64, spacing: f64) -> Ticks {
         let range = self.range.map(|end| end / self.unit.size);
@@ -73,8 +100,22 @@ impl Axis {
             Choice::Decimal => Ticks::decimal(range, most),
             Choice::Degrees => Ticks::degrees(range, most),
             Choice::Names(_) => Ticks::default(),
+            Choice::Bent(beyond) => {
+                let decade = (self.share(10.0 * beyond) - self.share(*beyond)) * length;
+                Ticks::bent(range, beyond / self.unit.size, DECADE_SPACING / decade)
+            }
         }
     }
+}
+
+/// Place of a value on an axis that is linear as far as ±1, and logarithmic beyond.
+fn bent(value: f64) -> f64 {
+    if value.abs() > 1.0 { value.signum() * (1.0 + value.abs().log10()) } else { value }
+}
+
+/// The value at a place on such an axis.
+fn straight(place: f64) -> f64 {
+    if place.abs() > 1.0 { place.signum() * 10_f64.powf(place.abs() - 1.0) } else { place }
 }
 
 /// Something drawn in a panel, in SI units of its axes.
@@ -96,6 +137,8 @@ pub(super) enum Mark {
     Upright(f64, Stroke),
     /// The ground between two places on the horizontal axis: a run's numbers there mean nothing.
     Beyond([f64; 2]),
+    /// A square piece of the panel enlarged.
+    Inset(Inset),
 }
 
 impl Mark {
@@ -166,7 +209,9 @@ pub(super) struct Words {
 
 /// Distances of major ticks that leave room for labels: across and down (pt).
 const SPACING: [f64; 2] = [38.0, 19.0];
-/// The same where both axes are alike (pt).
+/// Distance of labelled powers of ten (pt).
+const DECADE_SPACING: f64 = 12.0;
+/// That of major ticks where both axes are alike (pt).
 const EQUAL_SPACING: f64 = 30.0;
 
 impl Panel {
@@ -289,7 +334,8 @@ impl Panel {
         svg.lines(both(&ticks.major, MAJOR).into_iter().chain(both(&ticks.minor, MINOR)), &FRAME);
     }
 
-    fn draw_mark(&self, svg: &mut Svg, frame: Frame, mark: &Mark) {
+    /// Draws a mark in the panel's frame.
+    pub fn draw_mark(&self, svg: &mut Svg, frame: Frame, mark: &Mark) {
         let [left, top] = frame.corner;
         let [right, bottom] = [left + frame.size[0], top + frame.size[1]];
         let place = |[x, y]: &Point| [self.across(frame, *x), self.down(frame, *y)];
@@ -324,6 +370,7 @@ impl Panel {
                 let [from, to] = places.map(|place| self.across(frame, place).clamp(left, right));
                 svg.rectangles([[[from.min(to), top], [from.max(to), bottom]]], BEYOND);
             }
+            Mark::Inset(inset) => inset.draw(svg, frame, self),
         }
     }
 
@@ -352,15 +399,13 @@ impl Panel {
     }
 
     /// Where a value of the horizontal axis is on the page (pt).
-    fn across(&self, frame: Frame, x: f64) -> f64 {
-        let [low, high] = self.x.range;
-        frame.corner[0] + frame.size[0] * (x - low) / (high - low)
+    pub fn across(&self, frame: Frame, x: f64) -> f64 {
+        frame.corner[0] + frame.size[0] * self.x.share(x)
     }
 
     /// Where a value of the vertical axis is on the page (pt).
-    fn down(&self, frame: Frame, y: f64) -> f64 {
-        let [low, high] = self.y.range;
-        frame.corner[1] + frame.size[1] * (high - y) / (high - low)
+    pub fn down(&self, frame: Frame, y: f64) -> f64 {
+        frame.corner[1] + frame.size[1] * (1.0 - self.y.share(y))
     }
 
     /// Draws the legend in its lines, `line_height` (pt) apart, the first of which ends at a point.
@@ -472,6 +517,22 @@ mod tests {
         assert_eq!(with_room(None), [0.0, 1.0]);
         let [low, high] = with_room(Some([13.7, 13.7 + 1e-9]));
         assert!(low < 13.7 && high > 13.7 && high - low > 0.1, "{low} {high}");
+    }
+
+    #[test]
+    fn a_bent_axis_is_linear_about_zero_and_logarithmic_beyond() {
+        let axis = Axis::bent(Text::roman("Torque"), "N m", [-50.0, 900.0], 10.0);
+        let share = |value: f64| axis.share(value);
+        let decade = share(100.0) - share(10.0);
+        for (value, decades) in [(0.0, -1.0), (5.0, -0.5), (-10.0, -2.0), (1000.0, 2.0)] {
+            let found = (share(value) - share(10.0)) / decade;
+            assert!((found - decades).abs() < 1e-12, "{value}: {found}");
+        }
+        for end in [-50.0, 900.0] {
+            assert!(share(end) > 0.01 && share(end) < 0.99, "{end} has room");
+        }
+        let ticks = axis.ticks(100.0, 19.0);
+        assert_eq!(ticks.labels, ["−0.01", "0", "0.01", "0.1", "1"], "in kN m");
     }
 
     #[test]

@@ -50,6 +50,12 @@ impl Unit {
         Unit { size: 10_f64.powi(power), text: factor.and_text(&written(unit)) }
     }
 
+    /// A number with the unit behind it: `5 kN`, `0.1 × 10⁶ rad/s²`.
+    pub fn after(&self, number: &str) -> Text {
+        let times = if self.text.plain().starts_with("10") { " ×" } else { "" };
+        Text::roman(format!("{number}{times} ")).and_text(&self.text)
+    }
+
     /// A title with the unit behind it in brackets.
     pub fn behind(&self, title: Text) -> Text {
         if self.text.is_empty() { title } else { title.and(" (").and_text(&self.text).and(")") }
@@ -91,6 +97,13 @@ mod tests {
         ] {
             assert_eq!(Unit::fitting(unit, largest).text.plain(), text, "{largest} {unit}");
         }
+    }
+
+    #[test]
+    fn a_power_of_ten_is_multiplied_with_the_number_before_it() {
+        let after = |unit, largest| Unit::fitting(unit, largest).after("0.1").plain();
+        assert_eq!(after("rad/s^2", 4e6), "0.1 × 106\u{a0}rad/s²");
+        assert_eq!(after("N", 4e3), "0.1 kN");
     }
 
     #[test]

@@ -4,12 +4,12 @@ use super::{Error, Options, Over};
 use crate::case::{Case, Changes};
 use crate::certify::Horizon;
 use crate::model::did_you_mean;
-use crate::record::{Dimension, ResultFile, Table};
+use crate::record::{self, Dimension, ResultFile, Table};
 use crate::run::{Contact, Event, Peak, Revolution};
 use std::cell::RefCell;
 use std::collections::VecDeque;
 use std::ops::Range;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::rc::Rc;
 
 /// A run, read as far as several figures need it.
@@ -51,7 +51,7 @@ pub(super) struct DriveAngle {
 }
 
 impl Run {
-    fn read(file: ResultFile, options: &Options) -> Result<Self, Error> {
+    fn read(file: ResultFile, name: String, options: &Options) -> Result<Self, Error> {
         let path = || file.path().to_owned();
         let all = file.times()?;
         let from = options.from.unwrap_or(f64::NEG_INFINITY);
@@ -66,9 +66,8 @@ impl Run {
             }
             found => Some(found?),
         };
-        let name = file.text("case_name").filter(|name| !name.is_empty());
         Ok(Run {
-            name: name.map_or_else(|| stem(&file), str::to_owned),
+            name,
             times: all[window.clone()].to_vec(),
             drive,
             events: file.events()?,
@@ -195,19 +194,9 @@ pub(super) struct Runs {
 impl Runs {
     /// Reads the runs of some files.
     pub fn read(files: Vec<ResultFile>, options: &Options) -> Result<Self, Error> {
-        let (labels, files_given) = (&options.labels, files.len());
-        if !labels.is_empty() && labels.len() != files_given {
-            return Err(Error::Labels { labels: labels.len(), files: files_given });
-        }
-        let read = files.into_iter().map(|file| Run::read(file, options));
-        let mut runs = read.collect::<Result<Vec<Run>, Error>>()?;
-        let names: Vec<&str> = runs.iter().map(|run| run.name.as_str()).collect();
-        let paths: Vec<&Path> = runs.iter().map(|run| run.file.path()).collect();
-        let names = if labels.is_empty() { told_apart(&names, &paths) } else { labels.clone() };
-        for (run, name) in runs.iter_mut().zip(names) {
-            run.name = name;
-        }
-        Ok(Runs { runs })
+        let names = record::names_of_runs(&files, &options.labels)?;
+        let runs = files.into_iter().zip(names).map(|(file, name)| Run::read(file, name, options));
+        Ok(Runs { runs: runs.collect::<Result<_, Error>>()? })
     }
 
     /// The run of the ideal mechanism that others are compared with: the first without clearances,
@@ -261,37 +250,6 @@ pub(super) fn interpolate(at: &[f64], values: &[f64], x: f64) -> f64 {
     values[right - 1] + (values[right] - values[right - 1]) * ((x - from) / (to - from))
 }
 
-/// Names that tell runs apart: a run keeps a name that no other has; others are called by their
-/// files, with as many folders before them as it takes, and by their number if that is not enough.
-fn told_apart(names: &[&str], paths: &[&Path]) -> Vec<String> {
-    let count = |name: &str| names.iter().filter(|other| **other == name).count();
-    let most = paths.iter().map(|path| path.components().count()).max().unwrap_or(0);
-    let name = |k: usize| {
-        if count(names[k]) == 1 {
-            return names[k].to_owned();
-        }
-        let by_path = (1..=most).find_map(|folders| {
-            let tails: Vec<String> = paths.iter().map(|path| tail(path, folders)).collect();
-            let alone = tails.iter().filter(|other| **other == tails[k]).count() == 1;
-            (alone && count(&tails[k]) != 1).then(|| tails[k].clone())
-        });
-        by_path.unwrap_or_else(|| format!("{} ({})", tail(paths[k], 1), k + 1))
-    };
-    (0..names.len()).map(name).collect()
-}
-
-/// The last parts of a path, without the file's ending.
-fn tail(path: &Path, parts: usize) -> String {
-    let path = path.with_extension("");
-    let parts_of = path.components().map(|part| part.as_os_str().to_string_lossy());
-    let skipped = parts_of.clone().count().saturating_sub(parts);
-    parts_of.skip(skipped).collect::<Vec<_>>().join("/")
-}
-
-fn stem(file: &ResultFile) -> String {
-    file.path().file_stem().unwrap_or_default().to_string_lossy().into_owned()
-}
-
 /// The angle of the drive that the options name, or of the first. Which bodies it turns stands in
 /// the case that the file holds.
 fn drive_angle(
@@ -334,21 +292,6 @@ fn bodies_of_drive(file: &ResultFile, name: &str) -> Option<[String; 2]> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn runs_of_one_name_are_told_apart_by_as_much_of_their_paths_as_it_takes() {
-        for (names, paths, expected) in [
-            (["a", "b", "c"], ["x/r.h5", "y/r.h5", "r.h5"], ["a", "b", "c"]),
-            (["a", "a", "b"], ["x/one.h5", "x/two.h5", "r.h5"], ["one", "two", "b"]),
-            (["a", "a", "a"], ["x/r.h5", "y/r.h5", "y/s.h5"], ["x/r", "y/r", "s"]),
-            (["a", "a", "a"], ["/k/x/r.h5", "/l/x/r.h5", "r.h5"], ["k/x/r", "l/x/r", "r"]),
-            (["a", "a", "b"], ["r.h5", "r.h5", "r.h5"], ["r (1)", "r (2)", "b"]),
-            (["a", "a", "r"], ["x/r.h5", "x/s.h5", "t.h5"], ["x/r", "s", "r"]),
-        ] {
-            let paths = paths.map(Path::new);
-            assert_eq!(told_apart(&names, &paths), expected, "{names:?} {paths:?}");
-        }
-    }
 
     #[test]
     fn between_samples_values_are_linear_and_outside_they_stay() {

@@ -145,7 +145,8 @@ impl Sheet {
     fn room_left_of(&self, column: usize, heights: &[f64]) -> f64 {
         let room = |row: usize| {
             let panel = self.panel(row, column)?;
-            let titled = self.words(row, column).y_title || self.common_title().is_some();
+            let common = column == 0 && self.common_title().is_some();
+            let titled = self.words(row, column).y_title || common;
             let title = if titled { Y_TITLE } else { 0.0 };
             Some(panel.y_label_width(heights[row]) + LABEL_GAP + title)
         };

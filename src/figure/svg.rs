@@ -140,6 +140,19 @@ impl Svg {
         );
     }
 
+    /// What is drawn within is seen between two corners only.
+    pub fn clipped(&mut self, [from, to]: [Point; 2], draw: impl FnOnce(&mut Self)) {
+        let [x, y, width, height] =
+            [from[0], from[1], to[0] - from[0], to[1] - from[1]].map(number);
+        let _ = writeln!(
+            self.text,
+            "<svg x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" \
+             viewBox=\"{x} {y} {width} {height}\" overflow=\"hidden\">"
+        );
+        draw(self);
+        self.text.push_str("</svg>\n");
+    }
+
     /// The outline of a circle.
     pub fn circle(&mut self, [x, y]: Point, radius: f64, stroke: &Stroke) {
         let [x, y, radius] = [x, y, radius].map(number);

@@ -61,6 +61,27 @@ impl Ticks {
         Ticks::every(range, |k| step * k, step, (step / minor).round()).labelled(0)
     }
 
+    /// Ticks at zero and at powers of ten times a value, of both signs; every so many of them that
+    /// they are `apart` decades from each other at least.
+    pub fn bent([low, high]: [f64; 2], beyond: f64, apart: f64) -> Self {
+        const MOST: i32 = 40;
+        let step = apart.ceil().clamp(1.0, f64::from(MOST)) as usize;
+        let within = |value: &f64| (low..=high).contains(value);
+        let decades = (0..MOST).map(|decade| times_power(beyond, decade));
+        let both = |sizes: Vec<f64>| -> Vec<f64> {
+            sizes.into_iter().flat_map(|size| [-size, size]).filter(within).collect()
+        };
+        let mut major = both(decades.clone().step_by(step).collect());
+        major.extend(Some(0.0).filter(within));
+        major.sort_by(f64::total_cmp);
+        let between = decades.flat_map(|decade| (2..=10).map(move |k| decade * f64::from(k)));
+        let near = |place: &f64| major.iter().any(|tick| (tick - place).abs() < 1e-6 * place.abs());
+        let mut minor = both(between.collect());
+        minor.retain(|place| !near(place));
+        let labels = major.iter().map(|tick| signed(&written(*tick))).collect();
+        Ticks { major, minor, labels }
+    }
+
     fn every(range: [f64; 2], tick: impl Fn(f64) -> f64, step: f64, parts: f64) -> Self {
         let ticks = |step: f64, tick: &dyn Fn(f64) -> f64| -> Vec<f64> {
             let (first, last) = whole(range, step);
@@ -96,6 +117,12 @@ fn whole([low, high]: [f64; 2], step: f64) -> (f64, f64) {
 fn count(range: [f64; 2], step: f64) -> usize {
     let (first, last) = whole(range, step);
     (last - first + 1.0).max(0.0) as usize
+}
+
+/// A power of ten without rounding errors of its own, or zero.
+fn written(value: f64) -> String {
+    let decimals = if value == 0.0 { 0.0 } else { -value.abs().log10().round() };
+    format!("{value:.*}", decimals.max(0.0) as usize)
 }
 
 /// A number as printed: with a true minus sign, and no sign before zero.
@@ -149,6 +176,16 @@ mod tests {
         assert_eq!(Ticks::degrees([0.0, 30_000.0], 10).labels[..2], ["0", "3600"]);
         assert_eq!(Ticks::degrees([-180.0, 180.0], 6).labels, ["−180", "−90", "0", "90", "180"]);
         assert_eq!(Ticks::degrees([0.0, 0.4], 5).labels[..2], ["0.0", "0.1"]);
+    }
+
+    #[test]
+    fn powers_of_ten_stand_on_both_sides_of_zero() {
+        let ticks = Ticks::bent([-30.0, 2000.0], 1.0, 0.9);
+        assert_eq!(ticks.labels, ["−10", "−1", "0", "1", "10", "100", "1000"]);
+        let ticks = Ticks::bent([-0.02, 2.0], 0.001, 1.2);
+        assert_eq!(ticks.labels, ["−0.001", "0", "0.001", "0.1"]);
+        assert!(ticks.minor.iter().any(|place| (place - 0.01).abs() < 1e-9));
+        assert!(ticks.minor.iter().all(|place| (-0.02..=2.0).contains(place)));
     }
 
     #[test]

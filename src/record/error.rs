@@ -77,6 +77,20 @@ pub enum Error {
         /// Why it failed.
         source: io::Error,
     },
+    /// There are not as many labels as files.
+    #[error("each file needs one label, in their order: labels {labels}, files {files}")]
+    Labels {
+        /// Number of labels.
+        labels: usize,
+        /// Number of files.
+        files: usize,
+    },
+    /// Two files have one label.
+    #[error("two files have the label \"{label}\"; each needs its own")]
+    SameLabel {
+        /// The label.
+        label: String,
+    },
     /// The HDF5 library failed.
     #[error("cannot {attempt} {}", path.display())]
     Library {

@@ -35,12 +35,13 @@ pub struct Report {
 }
 
 impl Report {
-    /// Makes the report on these result files, in their order.
+    /// Makes the report on these result files, in their order. Labels are what their runs are
+    /// called; without any, they have the names of [`record::names_of_runs`].
     ///
     /// # Errors
-    /// A file cannot be read, or its samples cannot be packed.
-    pub fn new(files: &[ResultFile]) -> Result<Report, Error> {
-        let labels = run::labels(files);
+    /// A file cannot be read, its samples cannot be packed, or labels and files do not go together.
+    pub fn new(files: &[ResultFile], labels: &[String]) -> Result<Report, Error> {
+        let labels = record::names_of_runs(files, labels)?;
         let runs: Vec<Run<'_>> = files
             .iter()
             .zip(labels)

@@ -20,6 +20,26 @@ pub(super) fn significant(value: f64, digits: i32) -> String {
     format!("{sign}{mantissa}\u{202f}×\u{202f}10<sup>{}</sup>", exponent_of_ten(exponent))
 }
 
+/// A number with all its digits, and powers of ten where it is very large or small; as HTML.
+pub(super) fn exactly(value: f64) -> String {
+    let size = value.abs();
+    if !value.is_finite() || size == 0.0 || (1e-3..1e6).contains(&size) {
+        return if value.is_finite() {
+            value.to_string().replace('-', "−")
+        } else {
+            "–".to_owned()
+        };
+    }
+    let written = format!("{size:e}");
+    let (mantissa, exponent) = written.split_once('e').unwrap_or((&written, "0"));
+    let sign = if value < 0.0 { "−" } else { "" };
+    let lead = match mantissa {
+        "1" => String::new(),
+        mantissa => format!("{mantissa}\u{202f}×\u{202f}"),
+    };
+    format!("{sign}{lead}10<sup>{}</sup>", exponent.replace('-', "−"))
+}
+
 /// Digits before the point in groups of three, from ten thousand on.
 fn grouped(number: &str) -> String {
     let (whole, fraction) = number.split_once('.').map_or((number, None), |(w, f)| (w, Some(f)));
@@ -51,7 +71,7 @@ pub(super) fn milliseconds(time: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{milliseconds, significant};
+    use super::{exactly, milliseconds, significant};
 
     #[test]
     fn numbers_read_as_in_print() {
@@ -69,6 +89,17 @@ mod tests {
             (f64::INFINITY, 3, "–"),
         ] {
             assert_eq!(significant(value, digits), expected);
+        }
+        for (value, expected) in [
+            (1e-12, "10<sup>−12</sup>"),
+            (-2.5e-20, "−2.5\u{202f}×\u{202f}10<sup>−20</sup>"),
+            (1.043_715e10, "1.043715\u{202f}×\u{202f}10<sup>10</sup>"),
+            (-0.06, "−0.06"),
+            (5000.0, "5000"),
+            (0.0, "0"),
+            (f64::NAN, "–"),
+        ] {
+            assert_eq!(exactly(value), expected);
         }
         assert_eq!(milliseconds(0.012_530_04), "12.5300");
         assert_eq!(milliseconds(f64::NAN), "–");

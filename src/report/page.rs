@@ -15,7 +15,7 @@ const CHARTS_LICENCE: &str = include_str!("page/vendor/uplot.LICENSE");
 const STYLE: &str = include_str!("page/page.css");
 
 /// Modules of the script; each uses those above it, none below.
-const MODULES: [(&str, &str); 14] = [
+const MODULES: [(&str, &str); 17] = [
     ("format.js", include_str!("page/format.js")),
     ("theme.js", include_str!("page/theme.js")),
     ("unpack.js", include_str!("page/unpack.js")),
@@ -27,8 +27,11 @@ const MODULES: [(&str, &str); 14] = [
     ("dials.js", include_str!("page/dials.js")),
     ("strip.js", include_str!("page/strip.js")),
     ("transport.js", include_str!("page/transport.js")),
+    ("axes.js", include_str!("page/axes.js")),
     ("quantities.js", include_str!("page/quantities.js")),
     ("charts.js", include_str!("page/charts.js")),
+    ("paths.js", include_str!("page/paths.js")),
+    ("film.js", include_str!("page/film.js")),
     ("main.js", include_str!("page/main.js")),
 ];
 

@@ -1,7 +1,7 @@
 //! What was run, and how: the tables at the end of the page.
 
 use super::html::escape;
-use super::number::{milliseconds, significant};
+use super::number::{exactly, milliseconds, significant};
 use super::run::Run;
 use super::tables::Matrix;
 use crate::model::Model;
@@ -67,7 +67,7 @@ pub(super) fn failures(runs: &[Run<'_>]) -> String {
 fn told(run: &Run<'_>, attribute: &str) -> String {
     match run.file.attribute(attribute) {
         None => "–".to_owned(),
-        Some(Attribute::Number(value)) => escape(&format!("{value:e}")),
+        Some(Attribute::Number(value)) => exactly(*value),
         Some(other) if attribute == "case_sha256" => {
             format!("<code class=\"long\">{}</code>", escape(&other.to_string()))
         }
@@ -170,7 +170,10 @@ fn everything_of(run: &Run<'_>) -> String {
     let rows: String = attributes
         .filter(|(name, _)| !hidden.contains(&name.as_str()))
         .map(|(name, value)| {
-            let value = escape(&value.to_string());
+            let value = match value {
+                Attribute::Number(number) => exactly(*number),
+                other => escape(&other.to_string()),
+            };
             format!("<tr><th scope=\"row\"><code>{}</code></th><td>{value}</td></tr>", escape(name))
         })
         .collect();

@@ -214,26 +214,3 @@ impl PageRun<'_> {
         self.samples
     }
 }
-
-/// Names for runs on one page: the cases' names, the files' where those are the same, numbered
-/// where these are the same too.
-pub(super) fn labels(files: &[ResultFile]) -> Vec<String> {
-    let case_name = |file: &ResultFile| file.text("case_name").unwrap_or("run").to_owned();
-    let file_name = |file: &ResultFile| {
-        let stem = file.path().file_stem();
-        stem.map_or_else(|| "run".to_owned(), |stem| stem.to_string_lossy().into_owned())
-    };
-    let cases: Vec<String> = files.iter().map(case_name).collect();
-    if all_differ(&cases) {
-        return cases;
-    }
-    let names: Vec<String> = files.iter().map(file_name).collect();
-    if all_differ(&names) {
-        return names;
-    }
-    names.iter().enumerate().map(|(k, name)| format!("{}. {name}", k + 1)).collect()
-}
-
-fn all_differ(names: &[String]) -> bool {
-    (1..names.len()).all(|k| !names[..k].contains(&names[k]))
-}

@@ -3,6 +3,7 @@
 // peak between samples. Pictures go into the folder.
 import { chromium } from "playwright-core";
 import { createHash } from "node:crypto";
+import { readFileSync } from "node:fs";
 import { basename, join } from "node:path";
 import { pathToFileURL } from "node:url";
 
@@ -24,8 +25,8 @@ const browser = await chromium.launch({
 });
 
 /** Opens a page, and keeps what goes wrong and what it asks for. */
-async function open(path, { size = "desktop", colorScheme = "light", hash = "" } = {}) {
-  const context = await browser.newContext({ viewport: SIZES[size], colorScheme });
+async function open(path, { size = "desktop", colorScheme = "light", hash = "", ...more } = {}) {
+  const context = await browser.newContext({ viewport: SIZES[size], colorScheme, ...more });
   const page = await context.newPage();
   const seen = { requests: [], troubles: [] };
   page.on("request", (request) => seen.requests.push(request.url().slice(0, 200)));
@@ -89,6 +90,168 @@ async function link(page) {
     moment: await page.innerText("#moment"),
     address: await page.getAttribute("#link", "href"),
   };
+}
+
+/** Goes to a link, and waits for its moment. */
+async function goTo(page, hash) {
+  await page.evaluate((to) => (location.hash = to), hash);
+  const time = Number(hash.match(/t=([\d.]+)/)[1]).toFixed(4);
+  await page.waitForFunction((told) => document.getElementById("time").value === told, time);
+}
+
+/** A link carries the zoom of the charts. */
+async function zoomLink(page) {
+  await goTo(page, "#t=12.53&run=four-bar-c&from=10&to=20");
+  return {
+    stretches: await stretches(page),
+    address: await page.getAttribute("#link", "href"),
+    told: await page.innerText("#stretch"),
+  };
+}
+
+/** Charts over the crank angle: the same stretch, cursor, values, and what a click leads to. */
+async function overAngle(page) {
+  await page.selectOption("#over", "angle");
+  const told = {
+    stretches: await stretches(page),
+    cursors: await cursors(page),
+    readings: await readings(page),
+    address: await page.getAttribute("#link", "href"),
+  };
+  const box = await chartBox(page, "#chart-force");
+  told.pixel = 300 / box.width;
+  await page.mouse.click(box.x + 0.25 * box.width, box.y + box.height / 2);
+  told.clicked = await timeOf(page);
+  await page.click("#zoom-all");
+  [told.whole] = await stretches(page);
+  await page.selectOption("#over", "time");
+  await goTo(page, told.address);
+  told.followed = await stretches(page);
+  await page.selectOption("#over", "time");
+  await page.click("#zoom-all");
+  return told;
+}
+
+/** What is drawn on the stage while something happens: bold values, and how far lines reach. */
+async function drawnOnStage(page, happen) {
+  await page.evaluate(() => {
+    const kept = { fillText: CanvasRenderingContext2D.prototype.fillText, lineTo: CanvasRenderingContext2D.prototype.lineTo };
+    window.drawn = { kept, labels: [], across: [Infinity, -Infinity], down: [Infinity, -Infinity] };
+    const { drawn } = window;
+    CanvasRenderingContext2D.prototype.fillText = function (text, x, y) {
+      const isValue = this.canvas.id === "stage" && this.font.includes("600") && /^[\d.]+ \D*N$/.test(text);
+      if (isValue) drawn.labels.push({ text, x, y, width: this.measureText(text).width });
+      return kept.fillText.call(this, text, x, y);
+    };
+    CanvasRenderingContext2D.prototype.lineTo = function (x, y) {
+      if (this.canvas.id === "stage") {
+        drawn.across = [Math.min(drawn.across[0], x), Math.max(drawn.across[1], x)];
+        drawn.down = [Math.min(drawn.down[0], y), Math.max(drawn.down[1], y)];
+      }
+      return kept.lineTo.call(this, x, y);
+    };
+  });
+  await happen();
+  return page.evaluate(() => {
+    const { kept, ...drawn } = window.drawn;
+    Object.assign(CanvasRenderingContext2D.prototype, kept);
+    const { clientWidth: width, clientHeight: height } = document.getElementById("stage");
+    return { ...drawn, width, height };
+  });
+}
+
+/** Arrows longer than the stage. */
+async function arrows(page) {
+  await goTo(page, "#t=12.53&run=four-bar-c");
+  const before = await drawnOnStage(page, () => page.locator("#arrows").fill("80"));
+  const { labels: after, ...reach } = await drawnOnStage(page, () => page.locator("#arrows").fill("160"));
+  await page.locator("#stage").screenshot({ path: join(folder, "arrows.png") });
+  await page.locator("#arrows").fill("81");
+  return { before: before.labels, after, ...reach };
+}
+
+async function paths(page) {
+  const whole = await picture(page, "paths");
+  await goTo(page, "#t=12.53&run=four-bar-c&from=10&to=20");
+  const zoomed = await picture(page, "paths");
+  await goTo(page, "#t=13");
+  const told = { whole, zoomed, moved: await picture(page, "paths"), words: await page.innerText("#chart-paths .note") };
+  await page.locator("#chart-paths").screenshot({ path: join(folder, "paths.png") });
+  await page.evaluate(() => scrollTo(0, 0));
+  await page.click("#zoom-all");
+  return told;
+}
+
+/** Saves a picture and a film, and plays the film. */
+async function saved(page) {
+  await goTo(page, "#t=12&run=four-bar-c&from=12&to=13");
+  await page.selectOption("#speed", String(1 / 1000));
+  const press = async (id) => {
+    const [download] = await Promise.all([page.waitForEvent("download", { timeout: 60_000 }), page.click(id)]);
+    const path = join(folder, id === "#film" ? "film.webm" : "picture.png");
+    await download.saveAs(path);
+    return { name: download.suggestedFilename(), bytes: readFileSync(path) };
+  };
+  const told = {};
+  for (const [name, id] of [["picture", "#picture"], ["film", "#film"]]) {
+    const { bytes, ...file } = await press(id);
+    told[name] = { ...file, head: bytes.subarray(0, 8).toString("hex") };
+    if (name === "picture") told.picture.width = bytes.readUInt32BE(16) & ~1;
+    else told.played = await playFilm(bytes);
+  }
+  await page.click("#zoom-all");
+  return { ...told, button: await page.innerText("#film") };
+}
+
+async function playFilm(bytes) {
+  const page = await browser.newPage();
+  const told = await page.evaluate(async (data) => {
+    const film = Object.assign(document.createElement("video"), { muted: true, src: `data:video/webm;base64,${data}` });
+    const happens = (name) => new Promise((done) => film.addEventListener(name, done, { once: true }));
+    await happens("loadeddata");
+    const frame = () => {
+      const canvas = Object.assign(document.createElement("canvas"), { width: film.videoWidth, height: film.videoHeight });
+      canvas.getContext("2d").drawImage(film, 0, 0);
+      return canvas.toDataURL();
+    };
+    const first = frame();
+    // Such files do not tell their length: the end is sought beyond it.
+    film.currentTime = 1e6;
+    await happens("seeked");
+    return { width: film.videoWidth, first, last: frame(), seconds: film.currentTime };
+  }, bytes.toString("base64"));
+  await page.close();
+  const hash = (text) => createHash("sha256").update(text).digest("hex");
+  return { ...told, first: hash(told.first), last: hash(told.last) };
+}
+
+/** Powers of ten as computers write them, anywhere but in the case's own text. */
+const powers = (page) =>
+  page.evaluate(() => {
+    for (const node of document.querySelectorAll("#made details")) node.open = true;
+    const words = [...document.querySelectorAll("main > :not(#made), #made table")].map((node) => node.innerText).join("\n");
+    for (const node of document.querySelectorAll("#made details")) node.open = false;
+    const shown = words.split("\n").filter((line) => !/sha256|SHA-256|quote|source/.test(line));
+    return { words, computers: shown.filter((line) => /\d[eE][-+]?\d|10\^/.test(line)) };
+  });
+
+/** Targets of fingers that are too small on a phone. */
+async function touch() {
+  const { page } = await open(main, { size: "phone", hasTouch: true, isMobile: true, hash: "#t=12.53&run=four-bar-c" });
+  await page.evaluate(() => document.querySelector(".look").setAttribute("open", ""));
+  const told = await page.evaluate(() => {
+    const nodes = [...document.querySelectorAll("a, button, select, input, summary")].filter((node) => node.getClientRects().length);
+    const targets = nodes.map((node) => node.closest("label") ?? node);
+    const small = targets.filter((node) => {
+      const { width, height } = node.getBoundingClientRect();
+      return width < 40 || height < 40;
+    });
+    const overflow = document.documentElement.scrollWidth - innerWidth;
+    return { count: targets.length, small: small.map((node) => node.outerHTML.slice(0, 120)), overflow };
+  });
+  await page.screenshot({ path: join(folder, "touch.png"), fullPage: true });
+  await page.context().close();
+  return told;
 }
 
 /** A peak between samples is told like any value. */
@@ -264,6 +427,8 @@ async function otherPages() {
       end: await timeOf(page),
       charts: await page.locator(".card[open] .uplot").count(),
       playable: await page.isEnabled("#play"),
+      overAngle: await page.locator("#over").isVisible(),
+      paths: await page.locator("#paths").isVisible(),
     };
     await page.screenshot({ path: join(folder, `${basename(path, ".html")}.png`) });
     await page.context().close();
@@ -273,8 +438,11 @@ async function otherPages() {
 
 const { page, seen } = await open(main);
 const told = { ...seen };
-for (const step of [peak, link, factor, play, slowMotion, click, drag, keys, names]) told[step.name] = await step(page);
+for (const step of [peak, link, zoomLink, overAngle, factor, arrows, paths, play, slowMotion, click, drag, keys, names, powers, saved]) {
+  told[step.name] = await step(page);
+}
 await page.context().close();
+told.touch = await touch();
 told.pictures = await pictures();
 told.others = await otherPages();
 await browser.close();

@@ -1,7 +1,9 @@
-// Charts over time: a card a quantity, in it a panel a run; zoom and time cursor are shared.
-import { fixed, milliseconds, prefixed, significant } from "./format.js";
+// Charts over time or crank angle: a card a quantity, in it a panel a run; zoom and time cursor are
+// shared.
+import { fixed, inUnit, milliseconds, prefixed } from "./format.js";
 import { theme, seriesColour, onTheme } from "./theme.js";
 import { QUANTITIES } from "./quantities.js";
+import { axesOf, axisNumbers, splits } from "./axes.js";
 
 const PANEL_HEIGHT = 150;
 const LONE_PANEL_HEIGHT = 210;
@@ -9,7 +11,7 @@ const LONE_PANEL_HEIGHT = 210;
 /** Smallest range of an axis, as a share of the largest value on it. */
 const FLATTEST = 1e-3;
 
-/** Shortest stretch that can be zoomed to (ms), as a share of the whole. */
+/** Shortest stretch that can be zoomed to, as a share of the whole. */
 const SHORTEST = 1e-6;
 
 /** A run's curves in one chart. */
@@ -34,7 +36,7 @@ class Panel {
     const { card, run } = this;
     const { quantity, charts } = card;
     this.curves = this.chosenCurves();
-    const data = [charts.millisecondsOf(run), ...this.curves.map(({ values }) => values)];
+    const data = [charts.axis.rows(run), ...this.curves.map(({ values }) => values)];
     const series = this.curves.map(({ colour, dashed }) => ({
       stroke: () => (dashed ? theme().ghost : colour()),
       width: dashed ? 1.2 : 1.5,
@@ -75,7 +77,7 @@ class Panel {
     this.plot.over.addEventListener("click", (event) => this.click(event));
     this.plot.over.addEventListener("dblclick", () => charts.zoom(null));
     const items = this.curves.filter(({ dashed }) => !dashed).map(({ item }) => item);
-    this.place.setAttribute("aria-label", `${quantity.title} of ${items.join(", ")} in ${run.label} over time. Left and right arrow keys go from point to point, plus and minus zoom, 0 shows the whole run.`);
+    this.place.setAttribute("aria-label", `${quantity.title} of ${items.join(", ")} in ${run.label} over ${charts.axis.id === "angle" ? "the crank angle" : "time"}. Left and right arrow keys go from point to point, plus and minus zoom, 0 shows the whole run.`);
     this.buildHead();
     this.show(charts.stretch);
     this.tell();
@@ -107,9 +109,10 @@ class Panel {
     const font = "11px system-ui, sans-serif";
     const last = this.card.panels.at(-1) === this;
     const numbers = (plot, values) => axisNumbers(values);
+    const { axis } = this.card.charts;
     const scaled = (plot, values) => axisNumbers(values.map((value) => value / this.card.size));
     return [
-      { stroke, grid, ticks, font, size: 22, gap: 3, space: 60, values: numbers, label: last ? "time (ms)" : undefined, labelSize: 15, labelFont: font, labelGap: 0 },
+      { stroke, grid, ticks, font, size: 22, gap: 3, space: 60, incrs: axis.steps, values: numbers, label: last ? axis.title : undefined, labelSize: 15, labelFont: font, labelGap: 0 },
       { stroke, grid, ticks, font, size: 56, gap: 4, space: 26, splits: (plot, k, low, high) => splits(low / this.card.size, high / this.card.size).map((value) => value * this.card.size), values: scaled },
     ];
   }
@@ -142,7 +145,7 @@ class Panel {
     const time = card.charts.clock.time;
     for (const curve of this.curves) {
       const value = this.hovered === null ? onLine(curve.values, run, time) : curve.values[this.hovered];
-      curve.output.textContent = `${significant(value / card.size, 6)} ${card.unit}`;
+      curve.output.textContent = inUnit(value, card, 6);
     }
   }
 
@@ -165,8 +168,9 @@ class Panel {
   click(event) {
     if (Math.abs(event.clientX - this.pressed) > 3) return;
     const { left } = this.plot.over.getBoundingClientRect();
-    this.card.charts.clock.pause();
-    this.card.charts.clock.set(this.plot.posToVal(event.clientX - left, "x") / 1e3);
+    const { axis, clock } = this.card.charts;
+    clock.pause();
+    clock.set(axis.timeAt(this.run, this.plot.posToVal(event.clientX - left, "x")));
   }
 
   /** Keys of a chart that has the focus. */
@@ -197,7 +201,7 @@ class Panel {
     clock.set(times[Math.min(Math.max(from + count, 0), times.length - 1)]);
   }
 
-  /** Shows a stretch (ms); the whole, where there is none. */
+  /** Shows a stretch of the axis; the whole, where there is none. */
   show(stretch) {
     const [min, max] = stretch ?? this.card.charts.whole;
     this.plot.setScale("x", { min, max });
@@ -206,7 +210,8 @@ class Panel {
 
   /** Puts the time cursor where the time is. */
   placeNow() {
-    const x = this.plot.valToPos(this.card.charts.clock.time * 1e3, "x");
+    const { axis, clock } = this.card.charts;
+    const x = this.plot.valToPos(axis.at(this.run, clock.time), "x");
     const inside = x >= -0.5 && x <= this.plot.over.clientWidth + 0.5;
     this.line.hidden = !inside;
     if (inside) this.line.style.transform = `translateX(${x}px)`;
@@ -217,7 +222,7 @@ class Panel {
     const { ctx, bbox } = plot;
     const end = horizonOf(this.run, quantity);
     if (end === null) return;
-    const from = Math.min(Math.max(plot.valToPos(end * 1e3, "x", true), bbox.left), bbox.left + bbox.width);
+    const from = Math.min(Math.max(plot.valToPos(this.card.charts.axis.at(this.run, end), "x", true), bbox.left), bbox.left + bbox.width);
     ctx.save();
     ctx.fillStyle = theme().muted;
     ctx.globalAlpha = 0.22;
@@ -328,12 +333,14 @@ class Card {
     return Math.max(Math.abs(low), Math.abs(high), 0);
   }
 
-  /** Smallest and largest value of all curves of these panels in a stretch (ms). */
+  /** Smallest and largest value of all curves of these panels in a stretch of the axis. */
   extremes(panels, from, to) {
     let [low, high] = [Infinity, -Infinity];
     for (const { run, curves } of panels) {
       if (run.times.length === 0) continue;
-      const [first, last] = [run.rowAt(from / 1e3), Math.min(run.rowAt(to / 1e3) + 1, run.times.length - 1)];
+      const { axis } = this.charts;
+      const [begin, end] = [from, to].map((place) => (Number.isFinite(place) ? axis.timeAt(run, place) : place));
+      const [first, last] = [run.rowAt(begin), Math.min(run.rowAt(end) + 1, run.times.length - 1)];
       for (const { values } of curves) {
         for (let row = first; row <= last; row++) {
           const value = values[row];
@@ -378,12 +385,13 @@ class Card {
 export class Charts {
   constructor(place, runs, clock, colourOf) {
     Object.assign(this, { runs, clock, colourOf, stretch: null, sameScale: true, changes: [] });
-    this.times = new Map();
-    this.whole = [clock.begin * 1e3, clock.end * 1e3];
     const sampled = runs.filter((run) => run.times.length > 0);
     // A run that others have for their ideal is drawn in theirs.
     const ideals = new Set(sampled.map((run) => run.reference).filter(Boolean));
     const own = sampled.filter((run) => !ideals.has(run));
+    this.own = own;
+    this.axes = axesOf(own);
+    this.useAxis(this.axes[0]);
     this.cards = [];
     for (const quantity of QUANTITIES) {
       const having = own.filter((run) => quantity.items(run).length > 0);
@@ -392,6 +400,7 @@ export class Charts {
     place.append(...this.cards.map((card) => card.element));
     for (const card of this.cards) card.build();
     onTheme(() => this.rebuild());
+    this.setUpAxes();
     clock.watch((tick) => this.follow(tick));
     this.setUpButtons();
     this.tellStretch();
@@ -415,12 +424,59 @@ export class Charts {
     return this.cards.flatMap((card) => (card.element.open ? card.panels : [])).filter((panel) => panel.plot);
   }
 
-  millisecondsOf(run) {
-    if (!this.times.has(run)) this.times.set(run, run.times.map((time) => time * 1e3));
-    return this.times.get(run);
+  setUpAxes() {
+    const select = document.getElementById("over");
+    const names = { time: "time", angle: "crank angle" };
+    for (const { id } of this.axes) select.add(new Option(names[id], id));
+    select.closest("label").hidden = this.axes.length < 2;
+    select.addEventListener("change", () => this.draw(select.value, this.times()));
   }
 
-  /** Shows a stretch of time (ms) in all charts, or the whole. */
+  useAxis(axis) {
+    this.axis = axis;
+    const { begin, end } = this.clock;
+    const ends = [axis.at(this.own[0], begin), axis.at(this.own[0], end), ...this.own.flatMap((run) => [axis.at(run, run.begin), axis.at(run, run.end)])];
+    this.whole = [Math.min(...ends), Math.max(...ends)];
+  }
+
+  /** Draws everything over an axis, by its name, and of it a stretch of time (s), or the whole. */
+  draw(name, stretch) {
+    this.useAxis(this.axes.find(({ id }) => id === name) ?? this.axes[0]);
+    document.getElementById("over").value = this.axis.id;
+    this.stretch = stretch && this.within(stretch.map((time) => this.axis.at(this.own[0], time)));
+    this.rebuild();
+    this.zoom(this.stretch);
+  }
+
+  /** The stretch zoomed to as times (s) of a run; nothing where the whole is shown. */
+  times(run = this.own[0]) {
+    return this.stretch && this.stretch.map((place) => this.axis.timeAt(run, place));
+  }
+
+  /** What is shown of a run (s). */
+  stretchOf(run) {
+    const { begin, end } = run ?? this.clock;
+    const within = (time) => Math.min(Math.max(time, begin), end);
+    return this.times(run)?.map(within) ?? [begin, end];
+  }
+
+  /** What a link says of the charts: their axis, and the stretch (ms) they are zoomed to. */
+  link() {
+    const over = this.axis.id === "time" ? {} : { over: this.axis.id };
+    if (!this.stretch) return over;
+    const [from, to] = this.times().map((time) => Number((time * 1e3).toFixed(6)));
+    return { from, to, ...over };
+  }
+
+  /** Follows a link, as far as it speaks of the charts. */
+  readLink(link) {
+    const [from, to] = ["from", "to"].map((name) => Number.parseFloat(link.get(name)) / 1e3);
+    const zoomed = from < to;
+    if (!zoomed && !link.has("over")) return;
+    if (this.own.length) this.draw(link.get("over"), zoomed ? [from, to] : null);
+  }
+
+  /** Shows a stretch of the axis in all charts, or the whole. */
   zoom(stretch) {
     this.stretch = stretch && this.within(stretch);
     for (const panel of this.panels()) panel.show(this.stretch);
@@ -439,7 +495,7 @@ export class Charts {
   /** Zooms about the time of the page. */
   zoomBy(factor) {
     const [from, to] = this.stretch ?? this.whole;
-    const now = this.clock.time * 1e3;
+    const now = this.axis.at(this.own[0], this.clock.time);
     const about = now >= from && now <= to ? now : (from + to) / 2;
     this.zoom([about - (about - from) * factor, about + (to - about) * factor]);
   }
@@ -447,7 +503,7 @@ export class Charts {
   follow({ time, playing }) {
     if (this.stretch) {
       const [from, to] = this.stretch;
-      const now = time * 1e3;
+      const now = this.axis.at(this.own[0], time);
       if (now < from || now > to) this.zoom([now - 0.1 * (to - from), now + 0.9 * (to - from)]);
     }
     const due = performance.now() - (this.told ?? 0) > 100;
@@ -465,7 +521,7 @@ export class Charts {
   tellStretch() {
     const [from, to] = this.stretch ?? this.whole;
     const decimals = Math.min(6, Math.max(1, 3 - Math.floor(Math.log10(to - from || 1))));
-    document.getElementById("stretch").textContent = `${fixed(from, decimals)} to ${fixed(to, decimals)} ms`;
+    document.getElementById("stretch").textContent = `${fixed(from, decimals)} to ${fixed(to, decimals)} ${this.axis.unit}`;
   }
 
   rebuild() {
@@ -502,24 +558,6 @@ function onRows(values, times, rows) {
 
 function moves(type) {
   return type === "mousemove" || type === "mouseleave";
-}
-
-/** Round numbers in a range, four or five of them. */
-function splits(low, high) {
-  const rough = (high - low) / 4;
-  const power = 10 ** Math.floor(Math.log10(rough));
-  const step = [1, 2, 2.5, 5, 10].map((lead) => lead * power).find((size) => size >= rough);
-  const numbers = [];
-  for (let k = Math.ceil(low / step - 1e-9); k * step <= high + 1e-9 * step; k++) numbers.push(k * step);
-  return numbers;
-}
-
-/** Numbers of an axis, all with the decimals that the finest of them needs. */
-function axisNumbers(values) {
-  const step = values.length > 1 ? Math.abs(values[1] - values[0]) : Math.abs(values[0]) || 1;
-  const decimals = Math.min(9, Math.max(0, -Math.floor(Math.log10(step * 1.0001))));
-  const needs = Math.abs(step * 10 ** decimals - Math.round(step * 10 ** decimals)) > 1e-6 ? decimals + 1 : decimals;
-  return values.map((value) => fixed(value, needs));
 }
 
 function element(tag, className, text) {

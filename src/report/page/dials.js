@@ -1,7 +1,7 @@
 // Each journal centre in its clearance circle, true to scale.
 import { prefixed, significant } from "./format.js";
 import { theme, seriesColour, onTheme } from "./theme.js";
-import { prepare, label, circle, fadingPath, arrow } from "./pen.js";
+import { prepare, label, circle, fadingPath, arrowWithin } from "./pen.js";
 import { tailOf } from "./mechanism.js";
 
 const SMALLEST_DIAL = 116;
@@ -75,7 +75,8 @@ export class Dials {
     if (this.stage.largestForce > 0) {
       const [fx, fy] = run.forceAt(run.joints.indexOf(name));
       const length = (0.9 * radius * this.stage.forceFactor) / this.stage.largestForce;
-      arrow(pen, px, py, fx * length, -fy * length, theme().text, 2);
+      const box = { left: x - radius - 10, top: y - radius - 10, right: x + radius + 10, bottom: y + radius + 10 };
+      arrowWithin(pen, box, [px, py], [fx * length, -fy * length], theme().text, 2);
     }
     const { unit, size } = prefixed("m", radial);
     const below = { size: 11, align: "center" };

@@ -7,13 +7,26 @@ export function significant(value, digits) {
   if (value === null || value === undefined || !Number.isFinite(value)) return "–";
   if (value === 0) return "0";
   const exponent = Math.floor(Math.log10(Math.abs(value)));
-  if (exponent < -4 || exponent > 6) return trueMinus(value.toExponential(digits - 1)).replace("e", " × 10^").replace("+", "");
+  if (exponent < -4 || exponent > 6) {
+    const [lead, power] = value.toExponential(digits - 1).split("e");
+    return `${trueMinus(lead)} × 10${superscript(Number(power))}`;
+  }
   return trueMinus(value.toFixed(Math.max(0, Math.min(15, digits - 1 - exponent))));
 }
 
 /** A number with so many decimals and a true minus sign. */
 export function fixed(value, decimals) {
   return Number.isFinite(value) ? trueMinus(value.toFixed(decimals)) : "–";
+}
+
+/** A whole number as an exponent. */
+function superscript(number) {
+  return String(number).replace(/[-\d]/g, (sign) => "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"["-0123456789".indexOf(sign)]);
+}
+
+/** A value in a prefixed unit, `6.1 kN` or `−1.9 × 10³ rad/s²`. */
+export function inUnit(value, { unit, size }, digits) {
+  return `${significant(value / size, digits)} ${unit.startsWith("10") ? "× " : ""}${unit}`;
 }
 
 export function trueMinus(text) {

@@ -8,6 +8,8 @@ import { Dials } from "./dials.js";
 import { Strip } from "./strip.js";
 import { Transport } from "./transport.js";
 import { Charts } from "./charts.js";
+import { Paths } from "./paths.js";
+import { Film } from "./film.js";
 
 const byId = (id) => document.getElementById(id);
 
@@ -26,9 +28,11 @@ async function start() {
   const stage = new Stage(byId("stage"), runs, clock, colourOf);
   new Dials(byId("dials"), stage, clock, colourOf);
   const charts = new Charts(byId("charts"), runs, clock, colourOf);
-  const strip = new Strip(byId("strip"), runs, stage, clock, colourOf, () => charts.stretch?.map((time) => time / 1e3));
-  charts.changes.push(() => strip.draw());
-  const transport = new Transport(runs, clock, stage, colourOf);
+  const strip = new Strip(byId("strip"), runs, stage, clock, colourOf, () => charts.times());
+  const paths = new Paths(byId("charts"), charts.own, clock, colourOf, (run) => charts.stretchOf(run));
+  const transport = new Transport(runs, clock, stage, charts, colourOf);
+  const film = new Film(stage, clock, () => charts.stretchOf(stage.shown[0]));
+  charts.changes.push(() => strip.draw(), () => paths.redraw(), () => film.tell());
   setUpStage(stage, transport, () => {
     strip.redraw();
     clock.set(clock.time);

@@ -1,6 +1,7 @@
 // The mechanism at one moment: bodies, joints, bearings with enlarged clearance, forces.
 import { theme, seriesColour } from "./theme.js";
-import { arrow, circle, fadingPath, label } from "./pen.js";
+import { arrowWithin, circle, fadingPath, label, labelBeside } from "./pen.js";
+import { inUnit, prefixed } from "./format.js";
 
 /** Smallest radii that journal and bearing are drawn with (px). */
 const SMALLEST_JOURNAL = 4;
@@ -82,10 +83,16 @@ export function drawMechanism(pen, run, view, look) {
     else drawPin(pen, centre, seriesColour(look.colourOf(run.joints[index])));
     if (joint.driven) drawDrive(pen, centre, view, joint, look);
   });
+  const cuts = [];
   run.drawing.joints.forEach((joint, index) => {
-    if (look.forces) drawForce(pen, run, joint, index, at(places.place(joint.between[0])), view, look);
+    if (look.forces) drawForce(pen, run, joint, index, at(places.place(joint.between[0])), view, look, cuts);
   });
-  drawNames(pen, run, places, at, view, look);
+  const taken = [...look.taken, ...drawNames(pen, run, places, at, view, look)];
+  for (const { cut, colour, alpha, force } of cuts) {
+    pen.globalAlpha = alpha;
+    labelBeside(pen, look.box, cut, inUnit(force, prefixed("N", force), 3), { colour, weight: "600" }, taken);
+    pen.globalAlpha = 1;
+  }
 }
 
 /** The mechanism of another run as thin dashed lines. */
@@ -244,23 +251,25 @@ function drawDrive(pen, [x, y], view, joint, look) {
 
 /**
  * The force on a joint's second body: an ideal joint's starts at the pin, a contact's pushes the
- * journal from outside, its head where they touch.
+ * journal from outside, its head where they touch. Arrows that the border cuts go into `cuts`.
  */
-function drawForce(pen, run, joint, index, centre, view, look) {
+function drawForce(pen, run, joint, index, centre, view, look, cuts) {
   const name = run.joints[index];
   const colour = seriesColour(look.colourOf(name));
   const push = ([fx, fy], [ox, oy], alpha) => {
     const [dx, dy] = [fx * look.forceScale, -fy * look.forceScale];
     const length = Math.hypot(ox, oy);
+    let cut;
     pen.globalAlpha = alpha;
     if (joint.clearance && length > 0) {
       const { bearing } = circles(joint.clearance, look.factor, view.scale);
       const [x, y] = [centre[0] + (bearing * ox) / length, centre[1] - (bearing * oy) / length];
-      arrow(pen, x - dx, y - dy, dx, dy, colour, 3);
+      cut = arrowWithin(pen, look.box, [x - dx, y - dy], [dx, dy], colour, 3);
     } else {
-      arrow(pen, ...centre, dx, dy, colour, 3);
+      cut = arrowWithin(pen, look.box, centre, [dx, dy], colour, 3);
     }
     pen.globalAlpha = 1;
+    if (cut) cuts.push({ cut, colour, alpha, force: Math.hypot(fx, fy) });
   };
   for (const held of look.held) {
     if (held.run === run && held.joint === index) push(held.force, held.offset, held.alpha);
@@ -268,22 +277,32 @@ function drawForce(pen, run, joint, index, centre, view, look) {
   push(run.forceAt(index), joint.clearance ? run.offsetAt(name) : [0, 0], 1);
 }
 
+/** The rectangles that names of joints and bodies, and the joints themselves, take. */
 function drawNames(pen, run, places, at, view, look) {
-  if (!look.names) return;
+  const taken = [];
+  const take = (x, y, wide, high) => taken.push({ left: x - wide, right: x + wide, top: y - high, bottom: y + high });
+  const name = (text, x, y, how) => {
+    label(pen, text, x, y, how);
+    const width = pen.measureText(text).width;
+    take({ left: x + width / 2, right: x - width / 2, center: x }[how.align ?? "left"], y, width / 2 + 2, 9);
+  };
   run.drawing.joints.forEach((joint, index) => {
     const [x, y] = at(places.place(joint.between[0]));
     const hole = joint.clearance ? circles(joint.clearance, look.factor, view.scale).bearing + look.wall : 6;
+    take(x, y, hole, hole);
+    if (!look.names) return;
     const grounded = joint.between[0].body === null;
-    const name = run.joints[index];
-    const colour = seriesColour(look.colourOf(name));
-    if (grounded) label(pen, name, x - Math.max(20 * look.symbol, hole) - 6, y + 17 * look.symbol, { size: 14, colour, weight: "600", align: "right" });
-    else label(pen, name, x + 0.75 * hole + 5, y - 0.75 * hole - 9, { size: 14, colour, weight: "600" });
+    const how = { size: 14, colour: seriesColour(look.colourOf(run.joints[index])), weight: "600" };
+    if (grounded) name(run.joints[index], x - Math.max(20 * look.symbol, hole) - 6, y + 17 * look.symbol, { ...how, align: "right" });
+    else name(run.joints[index], x + 0.75 * hole + 5, y - 0.75 * hole - 9, how);
   });
+  if (!look.names) return taken;
   places.bodies.forEach((points, body) => {
     const drawn = points.map(at);
     const span = Math.max(...drawn.map(([x, y]) => Math.hypot(x - drawn[0][0], y - drawn[0][1])));
     if (span < 90) return;
     const [x, y] = at(places.centres[body]);
-    label(pen, run.bodies[body], x, y + 15, { size: 11, colour: theme().muted, align: "center" });
+    name(run.bodies[body], x, y + 15, { size: 11, colour: theme().muted, align: "center" });
   });
+  return taken;
 }

@@ -56,6 +56,92 @@ export function arrow(pen, x, y, dx, dy, colour, width = 2.5) {
   pen.fill();
 }
 
+/**
+ * An arrow that ends at the border of a box (`left`, `top`, `right`, `bottom`), where two strokes
+ * across it say that it goes on. If it does, the place and the direction (inwards) of its end.
+ */
+export function arrowWithin(pen, box, [x, y], [dx, dy], colour, width) {
+  if (!(Math.hypot(dx, dy) > 2)) return null;
+  const part = partWithin(box, [x, y], [dx, dy]);
+  if (!part) return null;
+  const [from, to] = part;
+  const at = (share) => [x + share * dx, y + share * dy];
+  const [begin, tip] = [at(from), at(to)];
+  if (to < 1 && from > 0) {
+    pen.strokeStyle = colour;
+    pen.lineWidth = width;
+    pen.beginPath();
+    pen.moveTo(...begin);
+    pen.lineTo(...tip);
+    pen.stroke();
+  } else {
+    arrow(pen, ...begin, tip[0] - begin[0], tip[1] - begin[1], colour, width);
+  }
+  if (from === 0 && to === 1) return null;
+  const length = Math.hypot(dx, dy);
+  const along = [dx / length, dy / length];
+  const [end, inwards] = to < 1 ? [tip, -1] : [begin, 1];
+  breakMark(pen, [end[0] + 18 * inwards * along[0], end[1] + 18 * inwards * along[1]], along, colour);
+  return { end, direction: along.map((part) => inwards * part) };
+}
+
+/**
+ * A label beside the cut end of an arrow: the first place on either side of it, inwards from the
+ * end, where it lies in the box and on none of the rectangles taken. Its own is taken from then on.
+ */
+export function labelBeside(pen, box, { end, direction }, text, look, taken) {
+  pen.font = `${look.weight} 12px ${FONT}`;
+  const [wide, high] = [pen.measureText(text).width / 2 + 4, 9];
+  const [x, y] = direction;
+  const places = [];
+  for (let along = 6; along <= 150; along += 12) {
+    for (const side of [1, -1]) {
+      // as far aside as the text needs for the slope of the arrow
+      const aside = side * (5 + wide * Math.abs(y) + high * Math.abs(x));
+      places.push([end[0] + along * x - aside * y, end[1] + along * y + aside * x]);
+    }
+  }
+  const about = ([a, b]) => ({ left: a - wide, right: a + wide, top: b - high, bottom: b + high });
+  const inside = ({ left, right, top, bottom }) => left >= box.left && right <= box.right && top >= box.top && bottom <= box.bottom;
+  const meet = (one, other) => one.left < other.right && other.left < one.right && one.top < other.bottom && other.top < one.bottom;
+  const free = (place) => inside(about(place)) && !taken.some((other) => meet(about(place), other));
+  const clamp = (value, low, most) => Math.min(Math.max(value, low), Math.max(low, most));
+  const [a, b] = places.find(free) ?? [
+    clamp(places[0][0], box.left + wide, box.right - wide),
+    clamp(places[0][1], box.top + high, box.bottom - high),
+  ];
+  taken.push(about([a, b]));
+  label(pen, text, a, b, { ...look, align: "center" });
+}
+
+/** Two strokes across a line, for what is left out of it. */
+function breakMark(pen, [x, y], [alongX, alongY], colour) {
+  const stroke = (shift, look, width) => {
+    pen.strokeStyle = look;
+    pen.lineWidth = width;
+    const [middleX, middleY] = [x + shift * alongX, y + shift * alongY];
+    const [acrossX, acrossY] = [6 * (0.4 * alongX - alongY), 6 * (0.4 * alongY + alongX)];
+    pen.beginPath();
+    pen.moveTo(middleX - acrossX, middleY - acrossY);
+    pen.lineTo(middleX + acrossX, middleY + acrossY);
+    pen.stroke();
+  };
+  stroke(0, theme().paper, 5);
+  stroke(-2.5, colour, 1.6);
+  stroke(2.5, colour, 1.6);
+}
+
+/** Which part of a line lies in a box, as shares of it; nothing if none does. */
+function partWithin({ left, top, right, bottom }, [x, y], [dx, dy]) {
+  let [from, to] = [0, 1];
+  for (const [step, room] of [[-dx, x - left], [dx, right - x], [-dy, y - top], [dy, bottom - y]]) {
+    if (step === 0 && room < 0) return null;
+    if (step > 0) to = Math.min(to, room / step);
+    if (step < 0) from = Math.max(from, room / step);
+  }
+  return from < to ? [from, to] : null;
+}
+
 /** A bar of a given length with what it stands for above it. */
 export function scaleBar(pen, x, y, length, text) {
   pen.strokeStyle = theme().muted;

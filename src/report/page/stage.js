@@ -107,6 +107,10 @@ export class Stage {
     const view = this.viewOf(run, cell);
     const { time } = this.clock;
     const look = this.lookOf(run, cell);
+    // Scales stand at the bottom, and the name of the run at the top.
+    const { left, right, top, bottom } = look.box;
+    look.taken = [{ left, right, top: bottom - (this.shown.length > 1 ? 0 : 36), bottom }];
+    if (this.shown.length > 1) look.taken.push({ left, right, top, bottom: top + 24 });
     if (this.ghost && run.reference?.drawing && run.reference.times.length > 0) {
       run.reference.seek(time);
       drawGhost(pen, run.reference, view);
@@ -128,6 +132,7 @@ export class Stage {
       factor: this.factor,
       forces: this.forces,
       forceScale: this.largestForce > 0 ? (this.forceFactor * LARGEST_ARROW * smaller) / this.largestForce : 0,
+      box: { left: cell.left + 3, top: cell.top + 3, right: cell.left + cell.width - 3, bottom: cell.top + cell.height - 3 },
       held: this.held.map((held) => ({ ...held, alpha: Math.max(0, 1 - (now - held.since) / HOLD) })),
       colourOf: this.colourOf,
       names: cell.width > 200,

@@ -1,6 +1,6 @@
 // Play, pause, slow motion, slider, jumps from impact to impact, keys, links to a moment.
 import { SPEEDS } from "./clock.js";
-import { fraction, milliseconds, significant, prefixed } from "./format.js";
+import { fraction, inUnit, milliseconds, significant, prefixed } from "./format.js";
 import { seriesColour } from "./theme.js";
 
 /** Positions of the slider. */
@@ -12,8 +12,8 @@ const TABLE_INTERVAL = 120;
 const find = (id) => document.getElementById(id);
 
 export class Transport {
-  constructor(runs, clock, stage, colourOf) {
-    Object.assign(this, { runs, clock, stage, colourOf, told: 0 });
+  constructor(runs, clock, stage, charts, colourOf) {
+    Object.assign(this, { runs, clock, stage, charts, colourOf, told: 0 });
     const { begin, end } = clock;
     this.slider = find("slider");
     this.slider.max = NOTCHES;
@@ -25,6 +25,7 @@ export class Transport {
     addEventListener("keydown", (event) => this.key(event));
     addEventListener("hashchange", () => this.readLink());
     clock.watch((tick) => this.follow(tick));
+    charts.changes.push(() => this.writeLink());
     this.readLink();
     this.follow({ playing: false });
   }
@@ -147,13 +148,12 @@ export class Transport {
       const clearance = run.clearances.indexOf(name);
       const [fx, fy] = run.forceAt(run.joints.indexOf(name));
       const force = Math.hypot(fx, fy);
-      const { unit, size } = prefixed("N", force);
       const row = document.createElement("tr");
       const head = document.createElement("th");
       head.scope = "row";
       head.textContent = several ? `${run.label}, ${name}` : name;
       head.style.setProperty("--colour", seriesColour(this.colourOf(name)));
-      const told = [this.modeOf(run, clearance, time), this.offsetOf(run, name, clearance), `${significant(force / size, 4)} ${unit}`];
+      const told = [this.modeOf(run, clearance, time), this.offsetOf(run, name, clearance), inUnit(force, prefixed("N", force), 4)];
       const cells = told.map((text) => Object.assign(document.createElement("td"), { textContent: text }));
       row.append(head, ...cells);
       return row;
@@ -174,11 +174,15 @@ export class Transport {
     return radial === null ? `${significant(eccentricity * 1e3, 5)} mm` : `${significant(eccentricity / radial, 5)} c`;
   }
 
-  /** `#t=12.53&run=four-bar-a`: a time in ms, and which run is on the stage. */
+  /**
+   * `#t=12.53&run=four-bar-a&from=10&to=20&over=angle`: a time (ms), which run is on the stage, the
+   * stretch (ms) that the charts are zoomed to, and what they are drawn over.
+   */
   readLink() {
     const link = new URLSearchParams(location.hash.slice(1));
     const run = this.runs.find(({ label }) => label === link.get("run"));
     if (run) this.choose?.(run);
+    this.charts.readLink(link);
     const time = Number.parseFloat(link.get("t"));
     if (!Number.isFinite(time)) return;
     this.clock.pause();
@@ -189,7 +193,8 @@ export class Transport {
     const time = (this.clock.time * 1e3).toFixed(6).replace(/\.?0+$/, "");
     const [shown, ...more] = this.stage.shown;
     const run = this.runs.length > 1 && shown && !more.length ? `&run=${encodeURIComponent(shown.label)}` : "";
-    this.address = `#t=${time}${run}`;
+    const charts = Object.entries(this.charts.link()).map(([name, value]) => `&${name}=${value}`);
+    this.address = `#t=${time}${run}${charts.join("")}`;
     find("link").href = this.address;
   }
 
