@@ -222,24 +222,80 @@ fn advance<S: Scalar>(
     reach(mechanism, now, to)
 }
 
-/// Moves a state to another time: along its velocity and acceleration, then onto the constraints.
+/// Moves a state to another time: along its velocity and acceleration, then onto the constraints;
+/// in as many strides as keep it on its branch. Beside a dead centre the other branch is near, and
+/// Newton's method ends on either: where it moves the mechanism by more than a share of what the
+/// stride does, the stride is halved.
 fn reach<S: Scalar>(
     mechanism: &mut Mechanism<S>,
     state: &mut Snapshot<S>,
     time: S,
 ) -> Result<(), Fault> {
-    let Snapshot { time: then, q, v, .. } = state;
-    let span = time - *then;
+    let mut to = time;
+    for _ in 0..MOST_STRIDES {
+        match stride(mechanism, state, to) {
+            Ok(true) if to == time => return Ok(()),
+            Ok(true) => to = time,
+            fell => {
+                let half = state.time + (to - state.time) * S::ratio(1, 2);
+                if half == state.time || half == to {
+                    fell?;
+                    break;
+                }
+                to = half;
+            }
+        }
+    }
+    Err(Fault::Fatal(Box::new(Undecided { time: state.time.to_f64() })))
+}
+
+/// Strides that a way may take.
+const MOST_STRIDES: usize = 10_000;
+/// By what share of a stride its end may be corrected, beside what rounding makes.
+const CORRECTED: f64 = 0.05;
+/// What rounding makes of a position, in units of the last place of the size of the mechanism.
+const ROUNDING: f64 = 1e3;
+
+/// Two branches are nearer to each other than the arithmetic can tell.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[error(
+    "the mechanism passes a dead centre at t = {time:e} s so closely that this arithmetic cannot \
+     tell on which side it goes on"
+)]
+struct Undecided {
+    /// Where it stands (s).
+    time: f64,
+}
+
+/// Moves a state to another time if its prediction was near enough, or leaves it.
+fn stride<S: Scalar>(
+    mechanism: &mut Mechanism<S>,
+    state: &mut Snapshot<S>,
+    to: S,
+) -> Result<bool, Fault> {
+    let span = to - state.time;
+    let (mut q, mut v) = (state.q.clone(), state.v.clone());
     if span != S::zero() {
-        mechanism.evaluate(State { time: *then, q, v, carried: None })?;
+        mechanism.evaluate(State { time: state.time, q: &q, v: &v, carried: None })?;
         for (k, a) in mechanism.accelerations().iter().enumerate() {
             q[k] += span * (v[k] + span * *a * S::ratio(1, 2));
             v[k] += span * *a;
         }
     }
-    mechanism.project(time, q, v)?;
-    *then = time;
-    mechanism.evaluate(State { time, q, v, carried: None })
+    let expected = q.clone();
+    mechanism.project(to, &mut q, &mut v)?;
+    let size = |k: usize| mechanism.scales().0[k];
+    let largest = |of: &dyn Fn(usize) -> S| {
+        (0..q.len()).map(|k| of(k).abs().to_f64() / size(k)).fold(0.0, f64::max)
+    };
+    let moved = largest(&|k| expected[k] - state.q[k]);
+    let corrected = largest(&|k| q[k] - expected[k]);
+    if span != S::zero() && !(corrected <= CORRECTED * moved + ROUNDING * S::EPSILON) {
+        return Ok(false);
+    }
+    (state.time, state.q, state.v) = (to, q, v);
+    mechanism.evaluate(State { time: to, q: &state.q, v: &state.v, carried: None })?;
+    Ok(true)
 }
 
 #[cfg(test)]
