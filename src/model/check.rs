@@ -181,7 +181,8 @@ fn check_clearance(complaints: &mut Complaints, key: &KeyPath, clearance: &Clear
     complaints.require(key.key("maximum_penetration"), share, "", range, holds);
     let before = complaints.len();
     check_normal(complaints, &key.key("normal"), &clearance.normal);
-    if bearing_right && radial_right && complaints.len() == before {
+    let is_inside = bearing_right && radial_right && radial.to_f64() < bearing.to_f64();
+    if is_inside && complaints.len() == before {
         check_stiffness(complaints, key.key("normal").key("stiffness"), clearance);
     }
     if let Some(friction) = &clearance.friction {

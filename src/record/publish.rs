@@ -166,17 +166,13 @@ impl Draft {
         first.sync()?;
         second.sync()?;
         let old = first.set_aside()?;
-        if let Err(error) = first.put().and_then(|()| second.put()) {
-            let back = match &old {
-                Some(old) => fs::rename(old, &first.target),
-                None if first.temporary.exists() => Ok(()),
-                None => fs::remove_file(&first.target),
-            };
-            return Err(back.map_or_else(|source| first.error("put back", source), |()| error));
-        }
+        let published = first.put().and_then(|()| {
+            second.put().map_err(|error| first.take_back(old.as_deref()).err().unwrap_or(error))
+        });
         if let Some(old) = old {
             let _ = fs::remove_file(old);
         }
+        published?;
         second.sync_folder()?;
         Ok([first.target.clone(), second.target.clone()])
     }
@@ -204,6 +200,15 @@ impl Draft {
             false if self.claim(&self.target)? => Ok(()),
             false => Err(Error::Exists { path: self.target.clone() }),
         }
+    }
+
+    /// Has what stood there before stand there again.
+    fn take_back(&self, old: Option<&Path>) -> Result<(), Error> {
+        let back = match old {
+            Some(old) => fs::rename(old, &self.target),
+            None => fs::remove_file(&self.target),
+        };
+        back.map_err(|source| self.error("put back", source))
     }
 
     /// Puts the temporary in the place of an old file, whose permissions it takes over.
