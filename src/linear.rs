@@ -77,6 +77,34 @@ fn solve_sized<S: Scalar>(factors: &[S], n: usize, b: &mut [S]) {
     }
 }
 
+/// Sign of the determinant of a square matrix, zero of a singular one; eliminates in place.
+pub fn determinant_sign<S: Scalar>(a: &mut [S], n: usize) -> i8 {
+    let mut sign = 1;
+    for k in 0..n {
+        let size = |row: &usize| a[row * n + k].abs().to_f64();
+        let largest = (k..n).max_by(|i, j| size(i).total_cmp(&size(j))).unwrap_or(k);
+        if largest != k {
+            sign = -sign;
+            (0..n).for_each(|c| a.swap(k * n + c, largest * n + c));
+        }
+        let pivot = a[k * n + k];
+        if pivot == S::zero() {
+            return 0;
+        }
+        if pivot < S::zero() {
+            sign = -sign;
+        }
+        for i in k + 1..n {
+            let factor = a[i * n + k] / pivot;
+            for c in k + 1..n {
+                let change = factor * a[k * n + c];
+                a[i * n + c] -= change;
+            }
+        }
+    }
+    sign
+}
+
 /// One row of a least-squares problem: coefficients a and error e of a·x + e.
 pub type Row<S> = (Vec<S>, S);
 
@@ -297,6 +325,16 @@ mod tests {
 
     proptest! {
         #[test]
+    fn the_sign_of_a_determinant_follows_rows_and_factors() {
+        let plain = [2.0, 1.0, 0.0, 1.0, 3.0, 1.0, 0.0, 1.0, 4.0]; // 18
+        let swapped = [0.0, 1.0, 4.0, 1.0, 3.0, 1.0, 2.0, 1.0, 0.0];
+        let flat = [1.0, 2.0, 3.0, 2.0, 4.0, 6.0, 1.0, 0.0, 1.0];
+        for (matrix, sign) in [(plain, 1), (swapped, -1), (plain.map(|x| -x), -1), (flat, 0)] {
+            assert_eq!(determinant_sign(&mut matrix.clone(), 3), sign, "{matrix:?}");
+        }
+    }
+
+    #[test]
         fn symmetric_solves_undo_products(
             g in proptest::collection::vec(-1.0..1.0f64, 25),
             x in proptest::collection::vec(-1.0..1.0f64, 5),

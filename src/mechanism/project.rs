@@ -150,6 +150,25 @@ impl<S: Scalar> Mechanism<S> {
         Err(Fault::Fatal(Box::new(OpenJoint { joint, off, time: self.now.time.to_f64() })))
     }
 
+    /// Sign of det Φ_q of a mechanism without freedom, as placed: on a branch of its motion it is
+    /// one and the same, and beside a dead centre the other branch has the other.
+    pub fn branch(&mut self) -> i8 {
+        self.reach();
+        let n = self.layout.coordinates;
+        let mut slopes = vec![S::zero(); n * n];
+        for (row, arms) in self.layout.constraints.iter().zip(&self.now.arms) {
+            for r in 0..row.constraint.rows() {
+                let sides = row.constraint.jacobian(r, arms);
+                for (body, side) in row.constraint.bodies().into_iter().zip(sides) {
+                    let Role::Free(at) = self.layout.roles[body] else { continue };
+                    let from = (row.first + r) * n + at;
+                    slopes[from..from + 3].copy_from_slice(&side);
+                }
+            }
+        }
+        linear::determinant_sign(&mut slopes, n)
+    }
+
     /// Fills λ with Φ; returns the largest of them.
     pub(super) fn position_errors(&mut self) -> S {
         let now = &mut self.now;

@@ -225,14 +225,14 @@ fn advance<S: Scalar>(
 /// Moves a state to another time: along its velocity and acceleration, then onto the constraints;
 /// in as many strides as keep it on its branch. Beside a dead centre the other branch is near, and
 /// Newton's method ends on either: where it moves the mechanism by more than a share of what the
-/// stride does, the stride is halved.
+/// stride does, or the sign of det Φ_q changes, the stride is halved.
 fn reach<S: Scalar>(
     mechanism: &mut Mechanism<S>,
     state: &mut Snapshot<S>,
     time: S,
 ) -> Result<(), Fault> {
     let mut to = time;
-    for _ in 0..MOST_STRIDES {
+    for _ in 0..MOST_PARTS {
         match stride(mechanism, state, to) {
             Ok(true) if to == time => return Ok(()),
             Ok(true) => to = time,
@@ -249,8 +249,8 @@ fn reach<S: Scalar>(
     Err(Fault::Fatal(Box::new(Undecided { time: state.time.to_f64() })))
 }
 
-/// Strides that a way may take.
-const MOST_STRIDES: usize = 10_000;
+/// Strides that a way to the next time may be parted into.
+const MOST_PARTS: usize = 10_000;
 /// By what share of a stride its end may be corrected, beside what rounding makes.
 const CORRECTED: f64 = 0.05;
 /// What rounding makes of a position, in units of the last place of the size of the mechanism.
@@ -267,7 +267,7 @@ struct Undecided {
     time: f64,
 }
 
-/// Moves a state to another time if its prediction was near enough, or leaves it.
+/// Moves a state to another time if its prediction was near enough and on its branch, or leaves it.
 fn stride<S: Scalar>(
     mechanism: &mut Mechanism<S>,
     state: &mut Snapshot<S>,
@@ -275,12 +275,14 @@ fn stride<S: Scalar>(
 ) -> Result<bool, Fault> {
     let span = to - state.time;
     let (mut q, mut v) = (state.q.clone(), state.v.clone());
+    let mut branch = None;
     if span != S::zero() {
         mechanism.evaluate(State { time: state.time, q: &q, v: &v, carried: None })?;
         for (k, a) in mechanism.accelerations().iter().enumerate() {
             q[k] += span * (v[k] + span * *a * S::ratio(1, 2));
             v[k] += span * *a;
         }
+        branch = Some(mechanism.branch());
     }
     let expected = q.clone();
     mechanism.project(to, &mut q, &mut v)?;
@@ -290,7 +292,8 @@ fn stride<S: Scalar>(
     };
     let moved = largest(&|k| expected[k] - state.q[k]);
     let corrected = largest(&|k| q[k] - expected[k]);
-    if span != S::zero() && !(corrected <= CORRECTED * moved + ROUNDING * S::EPSILON) {
+    let near = corrected <= CORRECTED * moved + ROUNDING * S::EPSILON;
+    if branch.is_some_and(|branch| !near || mechanism.branch() != branch) {
         return Ok(false);
     }
     (state.time, state.q, state.v) = (to, q, v);
