@@ -84,8 +84,11 @@ fn faults(desk: &Desk) -> String {
     made.into_os_string().into_string().unwrap()
 }
 
+/// Attributes in words, and datasets bit by bit.
+type Contents = (Vec<(String, String)>, Vec<(&'static str, Vec<u64>)>);
+
 /// What is in a result file but for the times of day.
-fn contents(desk: &Desk, name: &str) -> (Vec<(String, String)>, Vec<(&'static str, Vec<u64>)>) {
+fn contents(desk: &Desk, name: &str) -> Contents {
     let file = desk.open(name);
     let attributes = file.attributes().iter().filter(|(name, _)| !name.ends_with("_utc"));
     let attributes = attributes.map(|(name, value)| (name.clone(), format!("{value:?}")));
@@ -583,7 +586,7 @@ fn whatever_is_refused_is_refused_at_once_and_in_a_hundred_lines() {
         ("keys", format!("{keys}{text}"), Some(60_000)),
         ("bodies", format!("{text}\n{bodies}"), Some(80_000)),
         ("joints", format!("{joints}{text}"), None),
-        ("starts", format!("{starts}"), None),
+        ("starts", starts, None),
         ("names", names, None),
         ("digits", digits, None),
         ("power", power, None),
