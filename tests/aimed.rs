@@ -64,6 +64,15 @@ fn no_aimed_trial_is_certified_beyond_the_truth() {
     assert!(tally.judged > 5 * tally.certificates, "{}", tally.table());
 }
 
+/// A journal that hops, or does not, by a hair: the first pairs do not do.
+#[test]
+fn a_trial_that_takes_another_pair_is_certified_by_it() {
+    let verdict = judge::judge(&families::draw(SEED, 125));
+    let kinds: Vec<&str> = verdict.falls.iter().map(|fall| fall.kind).collect();
+    assert!(verdict.certified && verdict.judged > 10, "{}", verdict.judged);
+    assert_eq!(kinds, ["takes another pair"]);
+}
+
 /// Two branches cross but for a hair where the crank passes, and a stride that does not see the hair
 /// would go straight on: in 71 digits too, in both runs of a certificate.
 #[test]
