@@ -501,7 +501,8 @@ def judge(path, case, tolerance=1e-13):
     """Claims of a certified file held against an integration: by how many digits a claim exceeds the
     truth at most, the row, and how many digits could be judged at the end. What it differs by,
     tenfold, from one with a hundredfold tolerance and one from a start that is off by the rounding
-    of doubles, is not judged: its own start is that of the file, in doubles."""
+    of doubles, is not judged: its own start is that of the file, in doubles, and a clearance vector
+    a difference of its positions."""
     import h5py
 
     with h5py.File(path) as file:
@@ -512,12 +513,16 @@ def judge(path, case, tolerance=1e-13):
         tight = follow(case, y, until, tolerance, times)[1]
         loose = follow(case, y, until, 100.0 * tolerance, times)[1]
         signs = np.where(np.arange(len(y)) % 2, -1.0, 1.0)
+        at = y[: mechanism.size].reshape(-1, 3)[:, :2]
+        narrow = min((clearance.c for clearance in mechanism.clearances), default=1.0)
+        vague = np.finfo(float).eps * np.abs(at).max() / narrow
         beside = follow(case, y * (1.0 + np.finfo(float).eps * signs), until, tolerance, times)[1]
         over, where, judged = 0.0, None, 16.0
         for row, claim in enumerate(claims):
             theirs = stored(file, mechanism, row)
             ours, *others = (scaled(mechanism, state[row], file.attrs) for state in (tight, loose, beside))
-            unsure = 10.0 * max(np.abs(ours - other).max() for other in others) + 1e-12
+            apart = max(np.abs(ours - other).max() for other in others)
+            unsure = 10.0 * (apart + vague) + 1e-12
             off = np.abs(theirs - ours).max()
             judged = min(judged, -math.log10(unsure))
             if off > unsure + 10.0**-claim and claim + math.log10(off) > over:

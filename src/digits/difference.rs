@@ -92,6 +92,10 @@ impl Scales {
         for joint in &observation.joints {
             joint.force.iter().for_each(|force| forces.take(ulp(*force), self.force));
         }
+        for clearance in &observation.clearances {
+            forces.take(ulp(clearance.normal_force), self.force);
+            forces.take(ulp(clearance.tangential_force), self.force);
+        }
         let mut torque = Worst::default();
         observation.drive_torques.iter().for_each(|drive| torque.take(ulp(*drive), self.torque));
         Parts { state, forces: forces.0, torque: torque.0 }
@@ -117,7 +121,7 @@ impl Worst {
 mod tests {
     use super::super::{Sizes, digits};
     use super::*;
-    use crate::mechanism::BodyObservation;
+    use crate::mechanism::{BodyObservation, ClearanceObservation};
 
     fn turned(angle: f64, beyond: f64) -> Observation {
         let body = BodyObservation { angle, ..BodyObservation::default() };
@@ -145,5 +149,13 @@ mod tests {
     #[test]
     fn rounding_is_what_lies_beyond_the_doubles() {
         assert_eq!(scales().rounding(&turned(1.0, 4e-17)).state, 4e-17);
+    }
+
+    #[test]
+    fn the_force_of_a_contact_is_rounded_too() {
+        let clearance = ClearanceObservation { normal_force: 3.0, ..Default::default() };
+        let pressed = Observation { clearances: vec![clearance], ..turned(1.0, 0.0) };
+        let scales = scales();
+        assert_eq!(scales.rounding(&pressed).forces, f64::EPSILON / scales.force);
     }
 }
