@@ -309,6 +309,11 @@ pub trait Engine<S: Scalar> {
         self.within(time, at)
     }
 
+    /// Whether a glance takes as long as a step, as without an interpolant.
+    fn glances_are_steps(&self) -> bool {
+        false
+    }
+
     /// Which event functions passed zero at the end of the last step; all false if none did.
     fn fired(&self) -> &[bool];
 

@@ -609,6 +609,43 @@ fn an_interrupted_run_keeps_what_it_has_and_says_which_signal_came() {
     }
 }
 
+/// A signal that comes while the errors of a run are followed, when the run is done. In 71 digits
+/// they take more than twice as long as the run; how long that is depends on what else goes on.
+#[test]
+fn a_run_that_is_done_is_complete_whatever_interrupts_those_who_follow_its_errors() {
+    let desk = Desk::new();
+    let case = case("four-bar-c");
+    let run = ["run", &case, "--force", "--quiet"];
+    let slow = ["--set", "solver.engine=explicit", "--set", "solver.precision=71"];
+    let short = ["--set", "run.duration=0.002", "--set", "run.sample_interval=1e-4"];
+    let run = [&run[..], &slow, &short].concat();
+    let begun = Instant::now();
+    desk.run(&[&run[..], &["--no-tangent"]].concat()).assert_code(0);
+    let mut wait = begun.elapsed().mul_f64(1.6);
+    for _ in 0..12 {
+        let mut command = desk.command(&[&run[..], &["--tangent"]].concat());
+        let child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        std::thread::sleep(wait);
+        signal(&child, Signal::SIGINT);
+        let ended = child.wait_with_output().unwrap();
+        let errors = String::from_utf8(ended.stderr).unwrap();
+        match ended.status.code() {
+            Some(0) => wait = wait.mul_f64(0.7),
+            Some(130) if errors.contains("interrupted at t =") => wait = wait.mul_f64(1.2),
+            code => {
+                assert_eq!(code, Some(130), "{errors}");
+                assert!(errors.contains("the run itself is complete"), "{errors}");
+                let file = desk.open("four-bar-c.h5");
+                assert_eq!(file.text("run_status"), Some("complete"));
+                assert_eq!(file.times().unwrap().len(), 21);
+                assert_eq!(file.text("horizon_stopped"), Some("it was interrupted"));
+                return;
+            }
+        }
+    }
+    panic!("no signal came while errors were followed");
+}
+
 #[test]
 fn an_interrupted_run_with_force_leaves_the_old_file_alone() {
     let desk = Desk::new();

@@ -12,7 +12,7 @@ use freeplay::certify::{self, Companion, Horizon, Reach, Until, Witness};
 use freeplay::digits::Sizes;
 use freeplay::post::case_of;
 use freeplay::record::ResultFile;
-use freeplay::run::Progress;
+use freeplay::run::{Progress, Watcher};
 use freeplay::simulate::Simulation;
 use serde_json::Value;
 use simulated::told;
@@ -32,6 +32,15 @@ fn followed(case: &Case, times: Option<Vec<f64>>) -> Companion {
 }
 
 fn followed_to(case: &Case, times: Option<Vec<f64>>, reach: Reach) -> Companion {
+    followed_while(case, times, reach, &mut go_on)
+}
+
+fn followed_while(
+    case: &Case,
+    times: Option<Vec<f64>>,
+    reach: Reach,
+    watch: Watcher<'_>,
+) -> Companion {
     let simulation = told(Simulation::new(case));
     let simulation = match times {
         Some(times) => simulation.sampled_at(times),
@@ -44,7 +53,7 @@ fn followed_to(case: &Case, times: Option<Vec<f64>>, reach: Reach) -> Companion 
     told(ran);
     run.samples.iter().for_each(|sample| witness.take(sample));
     run.contacts.iter().for_each(|contact| witness.take_contact(*contact));
-    told(certify::companion(case, &schedule, &witness, reach, &mut go_on))
+    certify::companion(case, &schedule, &witness, reach, watch)
 }
 
 /// The estimate of a run's digits against what they are. It may not be far above the truth, and
@@ -225,6 +234,23 @@ fn a_companion_that_is_lost_says_so() {
     assert!(horizon.holds().contains("is not known"), "{}", horizon.holds());
     let digits = &companion.series()[2];
     assert!(digits.values.last().unwrap().is_nan(), "{}", digits.name);
+}
+
+#[test]
+fn a_companion_that_is_interrupted_tells_what_it_knows() {
+    let path = format!("{}/cases/four-bar-a.toml", root().display());
+    let set = vec![told("run.duration=0.012".parse())];
+    let case = told(Case::read(Path::new(&path), &Changes { set, ideal: false }));
+    let reach = Reach { to_the_end: false, run_steps: 1_000_000 };
+    let mut looks = 0;
+    let companion = followed_while(&case, None, reach, &mut |_| {
+        looks += 1;
+        if looks > 4 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    });
+    assert_eq!(companion.stopped.as_deref(), Some("it was interrupted"));
+    let horizon = companion.horizon();
+    assert!(horizon.state > 0.0 && horizon.state < 0.012, "{horizon:?}");
+    assert!(horizon.holds().contains("is not known"), "{}", horizon.holds());
 }
 
 /// Many samples are thinned, and told of all the same.

@@ -9,7 +9,7 @@
 //! This is an estimate and no certificate: two runs may err alike.
 
 use super::tangent::Tangent;
-use crate::case::{Case, EngineName, Precision};
+use crate::case::{Case, EngineName, Precision, SolverPlan};
 use crate::digits::{Largest, MOST_DIGITS, Parts, Scales, Sizes, digits};
 use crate::mechanism::Observation;
 use crate::record::{self, Attribute, Dimension, ResultFile, Series, Values};
@@ -23,10 +23,9 @@ use std::slice;
 
 /// Digits with which numbers still mean something: errors below a tenth of their scale.
 pub const LEAST_DIGITS: f64 = 1.0;
-/// Samples of a run that its companion looks at, at most.
-const MOST_KEPT: usize = 8192;
-/// Of these so many are the first, none left out: a horizon is near the start of a long run.
-const ALL_KEPT: usize = 4096;
+/// Samples of a run that its companion looks at: of those so far one more where as many have gone by
+/// as this part of them, so that a horizon is known to a part of itself and memory stays bounded.
+const DENSITY: usize = 256;
 /// Steps of a companion over those of the run, from which on it is lost: in a storm of events, say.
 const MORE_STEPS: u64 = 20;
 /// Steps that are few for any run.
@@ -43,15 +42,21 @@ const OVERFLOWING: f64 = 1e250;
 const LOOSEST: f64 = 1e-9;
 /// The tightest.
 const TIGHTEST: f64 = 1e-15;
-/// How much tighter the companion of a run by the same engine works.
+/// How much looser the companion of a run by the same engine works: its own error, which is the
+/// larger by as much, is then their distance, and costs fewer steps than that of a tighter one.
+const LOOSER: f64 = 10.0;
+/// How much tighter it works where that were too loose.
 const TIGHTER: f64 = 1e-2;
+/// Scaled distance of run and companion from which on they have parted, so that no part of it may be
+/// said to be the run's.
+const PARTED: f64 = 0.5;
 /// Error of a trajectory over the tolerance of its steps: some tens.
 const ERROR_OF_STEPS: f64 = 100.0;
 /// By how much more a run may be off before it is odd, where this many digits should be left.
 const ODD: (f64, f64) = (10.0, 3.0);
 
 /// What a companion must know of a run: the sizes of its quantities, and samples to be held
-/// against. Of a long run every second, fourth, … is kept, so that memory stays bounded.
+/// against. Of a long run fewer and fewer are kept, so that memory stays bounded.
 #[derive(Debug)]
 pub struct Witness {
     sizes: Sizes,
@@ -60,7 +65,6 @@ pub struct Witness {
     kept: Vec<(usize, Observation)>,
     /// The last sample, where it is not among them.
     last: Option<(usize, Observation)>,
-    stride: usize,
     samples: usize,
     /// Contacts, by clearance.
     contacts: Vec<Vec<Contact>>,
@@ -71,28 +75,21 @@ impl Witness {
     pub fn new(sizes: Sizes) -> Self {
         let contacts = vec![Vec::new(); sizes.clearances.len()];
         let largest = Largest::default();
-        Witness { sizes, largest, kept: Vec::new(), last: None, stride: 1, samples: 0, contacts }
+        Witness { sizes, largest, kept: Vec::new(), last: None, samples: 0, contacts }
     }
 
     /// Takes note of a sample.
     pub fn take(&mut self, sample: &Observation) {
         self.largest = self.largest.or(&Largest::of(slice::from_ref(sample)));
-        let (number, stride) = (self.samples, self.stride);
-        let keeps = |number: usize, stride: usize| {
-            number.checked_sub(ALL_KEPT).is_none_or(|behind| behind.is_multiple_of(stride))
-        };
-        if keeps(number, stride) {
+        let number = self.samples;
+        let gone_by = self.kept.last().map(|(kept, _)| number - kept);
+        if gone_by.is_none_or(|gone_by| gone_by >= number / DENSITY) {
             self.kept.push((number, sample.clone()));
             self.last = None;
         } else {
             self.last = Some((number, sample.clone()));
         }
         self.samples += 1;
-        if self.kept.len() >= MOST_KEPT {
-            self.stride *= 2;
-            self.last = self.kept.last().cloned();
-            self.kept.retain(|(number, _)| keeps(*number, 2 * stride));
-        }
     }
 
     /// Takes note of a contact.
@@ -165,18 +162,15 @@ pub struct Reach {
     pub run_steps: u64,
 }
 
-/// Sends a companion along a run of a case that is done.
-///
-/// # Errors
-/// [`simulate::Error::Interrupted`] if whoever watches asked to stop. A companion that fails says
-/// so in what it tells.
+/// Sends a companion along a run of a case that is done. A companion that fails, or that whoever
+/// watches asks to stop, says so in what it tells.
 pub fn companion(
     case: &Case,
     schedule: &Schedule,
     witness: &Witness,
     reach: Reach,
     watch: Watcher<'_>,
-) -> Result<Companion, simulate::Error<Infallible>> {
+) -> Companion {
     let samples: Vec<&Observation> = witness.to_follow().map(|(_, sample)| sample).collect();
     let times: Vec<f64> = samples.iter().map(|sample| sample.time).collect();
     let end = times.last().copied().unwrap_or(0.0);
@@ -208,13 +202,13 @@ pub fn companion(
         Err(simulate::Error::Interrupted { .. }) if lost.get() => {
             Some(format!("it took more than {most_steps} steps"))
         }
-        Err(interrupted @ simulate::Error::Interrupted { .. }) => return Err(interrupted),
+        Err(simulate::Error::Interrupted { .. }) => Some("it was interrupted".to_owned()),
         Err(error) => Some(super::chain(&error)),
     };
     let tangent = Tangent::new(times[..lengths.len()].to_vec(), lengths);
     let apart = with_peaks(apart, &tangent.times, peaks_apart);
     let digits = estimate(case, &tangent, &apart);
-    Ok(Companion {
+    Companion {
         parts_early: parts_early(case, &tangent, &digits),
         tangent,
         digits,
@@ -222,7 +216,7 @@ pub fn companion(
         stopped,
         samples: witness.samples,
         places: witness.to_follow().map(|(number, _)| *number).collect(),
-    })
+    }
 }
 
 /// When a run loses its last digit although the growth of errors leaves it some.
@@ -255,20 +249,36 @@ fn follow(
     watch: Watcher<'_>,
 ) -> Result<(), simulate::Error<Infallible>> {
     let solver = &case.plan.solver;
-    let (_, ran) = match (solver.engine, solver.precision) {
-        (EngineName::Explicit, Precision::Octuple) => {
-            run_tangent::<F256, _>(case, schedule, solver.reference_tolerance, follower, watch)
-        }
-        (EngineName::Explicit, Precision::Double) => {
-            let tolerance = (solver.relative_tolerance * TIGHTER).clamp(TIGHTEST, LOOSEST);
-            run_tangent::<f64, _>(case, schedule, tolerance, follower, watch)
-        }
-        (EngineName::Ida, _) => {
-            let tolerance = solver.relative_tolerance.clamp(TIGHTEST, LOOSEST);
-            run_tangent::<f64, _>(case, schedule, tolerance, follower, watch)
-        }
+    let tolerance = companion_tolerance(solver);
+    let (_, ran) = match solver.precision {
+        Precision::Octuple => run_tangent::<F256, _>(case, schedule, tolerance, follower, watch),
+        Precision::Double => run_tangent::<f64, _>(case, schedule, tolerance, follower, watch),
     };
     ran
+}
+
+/// Tolerance that a companion works to.
+fn companion_tolerance(solver: &SolverPlan) -> f64 {
+    match (solver.engine, solver.precision) {
+        (EngineName::Explicit, Precision::Octuple) => solver.reference_tolerance,
+        (EngineName::Explicit, Precision::Double) => {
+            let looser = solver.relative_tolerance * LOOSER;
+            let tighter = solver.relative_tolerance * TIGHTER;
+            if looser <= LOOSEST { looser } else { tighter.min(LOOSEST) }.max(TIGHTEST)
+        }
+        (EngineName::Ida, _) => solver.relative_tolerance.clamp(TIGHTEST, LOOSEST),
+    }
+}
+
+/// By how much the companion's error exceeds that of the run it is the distance from, where both
+/// are of one engine: as their tolerances do.
+fn excess(solver: &SolverPlan) -> f64 {
+    match (solver.engine, solver.precision) {
+        (EngineName::Explicit, Precision::Double) => {
+            (companion_tolerance(solver) / solver.relative_tolerance).max(1.0)
+        }
+        _ => 1.0,
+    }
 }
 
 /// Digits of the run, from the growth of errors and from its distance to the companion. A run in
@@ -279,7 +289,9 @@ fn estimate(case: &Case, tangent: &Tangent, apart: &[Parts<f64>]) -> Vec<Digits>
     let of_steps = tangent.digits_of(solver.reference_tolerance * ERROR_OF_STEPS);
     let left = if in_doubles { tangent.digits_left() } else { of_steps };
     let mut least = Digits { state: MOST_DIGITS, forces: MOST_DIGITS };
-    let digits_of = |difference: f64| digits(difference).max(0.0);
+    let excess = excess(solver);
+    let own = |apart: f64| if excess > 1.0 && apart >= PARTED { 1.0 } else { apart / excess };
+    let digits_of = |difference: f64| digits(own(difference)).max(0.0);
     let known = left.iter().zip(apart).map(|(left, apart)| {
         let Parts { state, forces, torque } = apart.map(digits_of);
         least.state = least.state.min(*left).min(state);
@@ -575,7 +587,7 @@ impl Horizon {
         let how = match (self.certified, file.text("engine")) {
             (true, _) => "certified against a second 71-digit run",
             (false, Some("ida")) => "by comparison with a run of an independent integrator",
-            (false, _) => "by comparison with a run at a tighter tolerance",
+            (false, _) => "by comparison with a run at another tolerance",
         };
         format!(
             "Simulated with {} ({engine}{tolerance}) from the case file with SHA-256 {}; {how}, {}.",
@@ -676,13 +688,15 @@ mod tests {
     fn of_many_samples_the_first_and_the_last_are_kept() {
         let sizes = Sizes { mass: 1.0, length: 1.0, rate: 1.0, clearances: Vec::new() };
         let mut witness = Witness::new(sizes);
-        let many = 3 * MOST_KEPT;
+        let many = 100 * DENSITY;
         for k in 0..many {
             witness.take(&Observation { time: k as f64, ..Observation::default() });
         }
         let numbers: Vec<usize> = witness.to_follow().map(|(number, _)| *number).collect();
-        assert!(numbers.len() <= MOST_KEPT + 1 && numbers.windows(2).all(|two| two[0] < two[1]));
-        assert_eq!(numbers[..ALL_KEPT], (0..ALL_KEPT).collect::<Vec<_>>());
+        assert!(numbers.len() < 8 * DENSITY, "{}", numbers.len());
+        assert!(numbers.windows(2).all(|two| two[0] < two[1]));
+        assert!(numbers.windows(2).all(|two| two[1] - two[0] <= 1 + two[1] / DENSITY));
+        assert_eq!(numbers[..DENSITY], (0..DENSITY).collect::<Vec<_>>());
         assert_eq!(numbers.last(), Some(&(many - 1)));
         assert!(witness.to_follow().all(|(number, sample)| sample.time == *number as f64));
     }

@@ -235,14 +235,17 @@ fn simulate_into(
     let Witnessed { writer, witness, own } = witnessed;
     let followed = ran.and_then(|()| {
         let companion = match witness {
-            Some(witness) => follow(tangent, &schedule, &witness, last.steps, signals)?,
+            Some(witness) => follow(tangent, &schedule, &witness, last.steps, signals),
             None => None,
         };
-        let check = match checked.zip(own) {
+        let check = match checked.zip(own).filter(|_| signals.exit_code().is_none()) {
             Some((case, own)) => {
                 let mut flow = |_: &Progress| signals.flow();
-                let check = certify::check_run(case, &own, &mut flow);
-                Some(check.map_err(simulate::Error::forget_recorder)?)
+                match certify::check_run(case, &own, &mut flow) {
+                    // the run is done all the same
+                    Err(simulate::Error::Interrupted { .. }) => None,
+                    check => Some(check.map_err(simulate::Error::forget_recorder)?),
+                }
             }
             None => None,
         };
@@ -259,6 +262,10 @@ fn simulate_into(
     let error = match followed {
         Ok((companion, check)) => {
             let path = finished.map_err(Failure::output)?;
+            if let Some(code) = signals.exit_code() {
+                let rest = format!("the run itself is complete, in {}", path.display());
+                return Err(Failure { code, error: Box::new(NotFollowed), rest: Some(rest) });
+            }
             return Ok(Told { path, progress: last, companion, check, revolution });
         }
         Err(error) => error,
@@ -275,6 +282,11 @@ fn simulate_into(
     Err(Failure { code, error: Box::new(error), rest: Some(rest) })
 }
 
+/// A signal that came when the run was done.
+#[derive(Debug, thiserror::Error)]
+#[error("interrupted while the errors of the run were followed")]
+struct NotFollowed;
+
 /// Follows the errors of a run that is done.
 fn follow(
     tangent: Carried<'_>,
@@ -282,16 +294,15 @@ fn follow(
     witness: &Witness,
     run_steps: u64,
     signals: &Signals,
-) -> Result<Option<Companion>, simulate::Error<record::Error>> {
+) -> Option<Companion> {
     let (case, to_the_end) = match tangent {
-        Carried::No => return Ok(None),
+        Carried::No => return None,
         Carried::ToTheHorizon(case) => (case, false),
         Carried::ToTheEnd(case) => (case, true),
     };
     let mut flow = |_: &Progress| signals.flow();
     let reach = Reach { to_the_end, run_steps };
-    let companion = certify::companion(case, schedule, witness, reach, &mut flow);
-    companion.map(Some).map_err(simulate::Error::forget_recorder)
+    Some(certify::companion(case, schedule, witness, reach, &mut flow))
 }
 
 /// A writer, and who takes note of what goes to it where errors are followed.

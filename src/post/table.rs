@@ -287,6 +287,18 @@ impl Summary {
         }
     }
 
+    /// What is said of extremes that only samples tell.
+    fn sample_words(&self) -> &'static str {
+        if self.horizon.as_ref().is_some_and(|horizon| horizon.certified) {
+            "sample: of the samples; between them it may be exceeded. A certified reference keeps no \
+             extremes by revolution: steps in 71 digits are too dear to be looked into for each. \
+             `freeplay run` of the same case finds them; what the reference says of its peaks is \
+             certified"
+        } else {
+            "sample: of the samples; between them it may be exceeded"
+        }
+    }
+
     /// What the marks mean.
     fn horizon_notes(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Some(horizon) = self.horizon.as_ref().filter(|horizon| !horizon.is_whole()) else {
@@ -323,7 +335,7 @@ impl Summary {
         for (basis, words) in [
             (Basis::Evaluated, "exact: the mechanism was evaluated there, true to rounding"),
             (Basis::Peak, self.peak_words()),
-            (Basis::Sample, "sample: of the samples; between them it may be exceeded"),
+            (Basis::Sample, self.sample_words()),
         ] {
             if bases.contains(&basis) {
                 writeln!(f, "{words}")?;

@@ -61,7 +61,7 @@ impl Extreme {
 /// largest magnitude of their revolution: what the search leaves out, rounding and drift off the
 /// constraints, and what the inside of a step is known to.
 pub(super) fn accuracy(tolerance: f64) -> f64 {
-    (10.0 * LEFT_OUT).max(100.0 * tolerance)
+    (10.0 * LEFT_OUT).max(10.0 * tolerance)
 }
 
 /// The largest and the smallest value over a span; `None` if there was no number in it.

@@ -1,6 +1,6 @@
 //! Looks into the last step for the extremes of forces, torques and accelerations.
 
-use super::extremes::{Look, Parts};
+use super::extremes::{Look, Parts, SKETCHABLE};
 use super::recorder::Recorder;
 use super::{Error, Outcome, Run};
 use crate::dae::{Engine, Fault, Snapshot, State, System};
@@ -9,8 +9,6 @@ use crate::scalar::Scalar;
 
 /// Phase (rad) of the fastest motion that a step may cover and be understood from its ends.
 const RESOLVED: f64 = 0.5;
-/// Phase of a step up to which a quintic through its ends is a sketch.
-const SKETCHABLE: f64 = 2.5;
 /// Parts of a step at most.
 const MOST_PARTS: f64 = 4096.0;
 /// Accuracy of a look, beyond that of the doubles that are told.
@@ -63,7 +61,7 @@ where
         if !tracker.has_moved() {
             return Ok(());
         }
-        if parts.count == 1 && tracker.is_quiet() {
+        if parts.count == 1 && tracker.is_quiet(self.paces[1]) {
             tracker.go_on();
             return Ok(());
         }
@@ -86,13 +84,10 @@ where
     /// Parts in which the last step is to be seen: as many as resolve the motion that it covers.
     fn parts(&self) -> Parts {
         let span = (self.engine.now().time - self.engine.began()).to_f64();
-        let square = span * span * self.paces[1];
-        if square <= RESOLVED * RESOLVED {
-            return Parts { count: 1, sketched: true };
-        }
-        let phase = square.sqrt();
-        let count = (phase / RESOLVED).ceil().min(MOST_PARTS) as u32;
-        Parts { count, sketched: phase <= SKETCHABLE }
+        let phase = (span * span * self.paces[1]).sqrt();
+        let count = (phase / RESOLVED).ceil().clamp(1.0, MOST_PARTS) as u32;
+        let sketched = count > 1 || self.engine.glances_are_steps();
+        Parts { count, sketched: sketched && phase <= SKETCHABLE, phase }
     }
 
     /// Hands over the revolution that the run ended in.

@@ -109,12 +109,13 @@ fn follow<S: Scalar, R: Recorder>(
     if !tracker.has_moved() {
         return Ok(());
     }
-    if tracker.is_quiet() {
+    if tracker.is_quiet(mechanism.pace_squared()) {
         tracker.go_on();
         return Ok(());
     }
     let failed = |source| Error::System { time, source };
-    let whole = Parts { count: 1, sketched: false };
+    // what stands for a sketch is assembled, and exact
+    let whole = Parts { count: 1, sketched: true, phase: 0.0 };
     tracker.examine(whole, &mut Nearby { mechanism, at: now.clone() }).map_err(failed)?;
     for revolution in tracker.finished() {
         recorder.revolution(&revolution).map_err(Error::Recorder)?;

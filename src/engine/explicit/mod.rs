@@ -525,6 +525,10 @@ impl<S: Scalar, Y: System<S>> Engine<S> for Explicit<S, Y> {
         Ok(())
     }
 
+    fn glances_are_steps(&self) -> bool {
+        true
+    }
+
     fn fired(&self) -> &[bool] {
         &self.fired
     }
