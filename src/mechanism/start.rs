@@ -28,6 +28,8 @@ use crate::linear::{self, Cascade};
 use crate::model::{Complaint, KeyPath, Start};
 use crate::scalar::Scalar;
 
+/// Speeds and rates less than this share of others, or than this many rad/s, are none.
+const HARDLY: f64 = 1e-9;
 const MOST_STEPS: usize = 200;
 /// First steps, which weigh centring against staying: what the case does not name goes first.
 const FIRST_STEPS: usize = 2;
@@ -170,7 +172,11 @@ impl<S: Scalar> Mechanism<S> {
         disturb(&mut v, &self.velocity_scales);
         self.project(S::zero(), &mut q, &mut v).map_err(start_fault)?;
         self.modes.fill(Mode::Flight);
-        self.begin(&q, &v)
+        // the run is to differ by its start alone
+        let scales = (self.coordinate_scales.clone(), self.velocity_scales.clone());
+        self.begin(&q, &v)?;
+        (self.coordinate_scales, self.velocity_scales) = scales;
+        Ok(())
     }
 
     /// Takes a start: scales, first modes, energy.
@@ -574,10 +580,14 @@ impl<S: Scalar> Mechanism<S> {
         let largest = |of: &dyn Fn(&crate::plane::Motion<S>) -> S| {
             self.now.motions.iter().map(|m| of(m).abs().to_f64()).fold(0.0, f64::max)
         };
-        let or = |x: f64, other: f64| if x > 0.0 { x } else { other };
+        // what hardly moves, or only by rounding, is no measure of what will
+        let or = |x: f64, other: f64| if x > HARDLY * other { x } else { other };
         let turning = largest(&|motion| motion.angular);
         let going = largest(&|motion| motion.linear.norm());
-        let rate = or(turning, or(going / self.length, 1.0));
+        let rate = match or(turning, going / self.length) {
+            rate if rate > HARDLY => rate,
+            _ => 1.0,
+        };
         let speed = or(going, rate * self.length);
         let bodies = self.layout.coordinates / 3;
         self.coordinate_scales = [self.length, self.length, 1.0].repeat(bodies);
