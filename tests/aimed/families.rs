@@ -182,10 +182,7 @@ pub fn write_run(text: &mut String, duration: Decimal) {
 
 /// Until when the events of a run of some lines are known (s).
 fn known(lines: &[&Line], until: Decimal) -> F256 {
-    lines
-        .iter()
-        .map(|line| line.until())
-        .fold(until.value(), |known, until| Scalar::min(known, until))
+    lines.iter().map(|line| line.until()).fold(until.value(), Scalar::min)
 }
 
 fn events(lines: &[&Line], until: F256) -> Vec<Event> {

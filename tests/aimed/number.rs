@@ -41,6 +41,11 @@ impl Decimal {
     pub fn to_f64(self) -> f64 {
         self.value().to_f64()
     }
+
+    /// Its mantissa before a lower power of ten.
+    fn mantissa_at(self, power: i32) -> i128 {
+        self.mantissa * 10i128.pow((self.power - power) as u32)
+    }
 }
 
 impl fmt::Display for Decimal {
@@ -60,8 +65,7 @@ impl Add for Decimal {
     type Output = Decimal;
     fn add(self, other: Decimal) -> Decimal {
         let power = self.power.min(other.power);
-        let at = |decimal: Decimal| decimal.mantissa * 10i128.pow((decimal.power - power) as u32);
-        Decimal::new(at(self) + at(other), power)
+        Decimal::new(self.mantissa_at(power) + other.mantissa_at(power), power)
     }
 }
 
