@@ -155,7 +155,7 @@ mod tests {
     fn the_force_of_a_contact_is_rounded_too() {
         let clearance = ClearanceObservation { normal_force: 3.0, ..Default::default() };
         let pressed = Observation { clearances: vec![clearance], ..turned(1.0, 0.0) };
-        let scales = scales();
+        let scales = Scales { clearances: vec![1e-3], ..scales() };
         assert_eq!(scales.rounding(&pressed).forces, f64::EPSILON / scales.force);
     }
 }
