@@ -170,10 +170,11 @@ fn where_journals_cannot_be_centred_their_eccentricities_are_least_in_every_arit
     let exact: Vec<F256> =
         cases.iter().flat_map(|case| told(assemble::<F256>(case)).start().q.clone()).collect();
     let number = |literal: &str| F256::parse(literal).unwrap();
+    let origin = told(assemble::<F256>(&long)).model().origin();
     // tan of the angles is 3/4 and 2/5, and the middle of the plate's points lies off its centre
     let known = [
-        (exact[0] - (number("0.26") + number("0.006"))),
-        (exact[1] - (number("0.32") - number("0.008"))),
+        (exact[0] + origin.x - (number("0.26") + number("0.006"))),
+        (exact[1] + origin.y - (number("0.32") - number("0.008"))),
         {
             let (sin, cos) = exact[2].sin_cos();
             sin * number("4") - cos * number("3")

@@ -143,10 +143,10 @@ fn fail_each_call(
         }
         // what was there before is there again, for the next; a result that could not be put in its
         // place may lie beside it
+        // once they stand there, names may be whole and yet not be durable
+        let named = said.errors.contains("cannot make durable") && whole();
         for (name, bytes) in outputs.iter().zip(&old) {
             let kept = desk.bytes(name);
-            // once it stands there a name may be whole and yet not be durable
-            let named = said.errors.contains("cannot make durable") && whole();
             assert!(said.code == Some(0) || kept == *bytes || named, "{name} is lost: {told}");
             std::fs::write(desk.path(name), bytes).unwrap();
         }

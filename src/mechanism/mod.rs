@@ -169,7 +169,8 @@ impl<S: Scalar> Mechanism<S> {
         &self.model
     }
 
-    /// The assembled start: coordinates and velocities at t = 0, integrals zero.
+    /// The assembled start: coordinates, from [`Model::origin`], and velocities at t = 0, integrals
+    /// zero.
     pub fn start(&self) -> &Snapshot<S> {
         &self.start
     }
