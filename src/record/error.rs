@@ -68,6 +68,17 @@ pub enum Error {
         path: PathBuf,
     },
     /// The operating system refused.
+    /// Of two files that belong together one was replaced, the other could not be, and the old file
+    /// cannot be put back.
+    #[error("cannot put back {}, whose old file is now {}", path.display(), kept.display())]
+    NotPutBack {
+        /// The output.
+        path: PathBuf,
+        /// Where its old file is.
+        kept: PathBuf,
+        /// What the operating system says.
+        source: std::io::Error,
+    },
     #[error("cannot {attempt} {}", path.display())]
     System {
         /// What was attempted, as a verb.

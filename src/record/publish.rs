@@ -167,9 +167,13 @@ impl Draft {
         second.sync()?;
         let old = first.set_aside()?;
         let published = first.put().and_then(|()| {
-            second.put().map_err(|error| first.take_back(old.as_deref()).err().unwrap_or(error))
+            second.put().map_err(|error| match first.take_back(old.as_deref()) {
+                Ok(()) => error,
+                // the old file stays under its other name, which the error tells
+                Err(lost) => lost,
+            })
         });
-        if let Some(old) = old {
+        if let (Some(old), false) = (old, matches!(published, Err(Error::NotPutBack { .. }))) {
             let _ = fs::remove_file(old);
         }
         published?;
@@ -204,11 +208,15 @@ impl Draft {
 
     /// Has what stood there before stand there again.
     fn take_back(&self, old: Option<&Path>) -> Result<(), Error> {
-        let back = match old {
-            Some(old) => fs::rename(old, &self.target),
-            None => fs::remove_file(&self.target),
+        let Some(old) = old else {
+            let gone = fs::remove_file(&self.target);
+            return gone.map_err(|source| self.error("take back", source));
         };
-        back.map_err(|source| self.error("put back", source))
+        fs::rename(old, &self.target).map_err(|source| Error::NotPutBack {
+            path: self.target.clone(),
+            kept: old.to_owned(),
+            source,
+        })
     }
 
     /// Puts the temporary in the place of an old file, whose permissions it takes over.
@@ -226,9 +234,7 @@ impl Draft {
         if !self.force || !self.target.exists() {
             return Ok(None);
         }
-        let mut name = self.temporary.clone().into_os_string();
-        name.push("-old");
-        let old = PathBuf::from(name);
+        let old = beside(&self.target, &format!("old-{}", std::process::id()));
         fs::hard_link(&self.target, &old)
             .or_else(|_| fs::copy(&self.target, &old).map(drop))
             .map_err(|source| self.error("set aside", source))?;
@@ -412,7 +418,7 @@ fn parse_temporary(name: &OsStr) -> Option<(OsString, u32)> {
     let (of, rest) = name.rsplit_once(PARTIAL)?;
     let mut words = rest.split('-');
     let process = words.next()?.parse().ok()?;
-    let ours = |word: &str| ["old", "room"].contains(&word) || word.parse::<u32>().is_ok();
+    let ours = |word: &str| word == "room" || word.parse::<u32>().is_ok();
     words.all(ours).then(|| (format!("{of}{PARTIAL}").into(), process))
 }
 
