@@ -57,7 +57,9 @@ impl Desk {
     }
 
     pub fn command<A: AsRef<OsStr>>(&self, arguments: &[A]) -> Command {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_freeplay"));
+        // tests that run in the background of a script would inherit that signals are ignored
+        let mut command = Command::new("env");
+        command.args(["--default-signal", env!("CARGO_BIN_EXE_freeplay")]);
         command.args(arguments).current_dir(&self.folder).stdin(Stdio::null());
         command
     }
