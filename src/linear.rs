@@ -136,8 +136,8 @@ impl<S: Scalar> Cascade<S> {
     }
 
     /// Minimises |A x + e| over what is free. Directions that a row sees with less than `least` of
-    /// its largest coefficients stay free. `bend` is the diagonal of a matrix D of second
-    /// derivatives: with it, ½|A x + e|² + ½ xᵀ D x is minimised, if that has a minimum.
+    /// its largest coefficients stay free. `bend` is a symmetric matrix D of second
+    /// derivatives, row by row: with it, ½|A x + e|² + ½ xᵀ D x is minimised, if that has a minimum.
     ///
     /// Returns the condition number: the largest row over what the last direction was seen with.
     pub fn minimise(&mut self, rows: &[Row<S>], bend: Option<&[S]>, least: f64) -> f64 {
@@ -209,12 +209,10 @@ impl<S: Scalar> Cascade<S> {
         let n = right.len();
         let seen: Vec<Vec<S>> =
             (0..n).map(|k| self.free.iter().map(|free| free[k]).collect()).collect();
-        let bent = |a: &Vec<S>, b: &Vec<S>| {
-            let product = a.iter().zip(b).zip(bend);
-            product.fold(S::zero(), |sum, ((a, b), d)| sum + *a * *b * *d)
-        };
+        let bent = |x: &[S]| -> Vec<S> { bend.chunks(x.len()).map(|row| dot(row, x)).collect() };
+        let images: Vec<Vec<S>> = seen.iter().map(|z| bent(z)).collect();
         let mut columns: Vec<Vec<S>> =
-            seen.iter().map(|a| seen.iter().map(|b| bent(a, b)).collect()).collect();
+            seen.iter().map(|a| images.iter().map(|b| dot(a, b)).collect()).collect();
         for _ in 0..2 {
             columns.iter_mut().for_each(|column| solve_lower(r, column));
             columns = (0..n).map(|i| columns.iter().map(|column| column[i]).collect()).collect();
@@ -224,7 +222,7 @@ impl<S: Scalar> Cascade<S> {
             matrix[i * n + i] += S::one();
         }
         if factor_symmetric(&mut matrix, n).is_ok() {
-            let bent: Vec<S> = self.x.iter().zip(bend).map(|(x, d)| *x * *d).collect();
+            let bent = bent(&self.x);
             let mut pull: Vec<S> = seen.iter().map(|z| dot(z, &bent)).collect();
             solve_lower(r, &mut pull);
             right.iter_mut().zip(pull).for_each(|(right, pull)| *right += -pull);
@@ -394,15 +392,18 @@ mod tests {
         #[test]
         fn second_derivatives_move_the_minimum(
             g in proptest::collection::vec(-1.0..1.0f64, 12),
-            bend in proptest::collection::vec(0.0..1.0f64, 3),
+            root in proptest::collection::vec(-1.0..1.0f64, 9),
         ) {
+            let product = |i: usize, j: usize| dot(&root[3 * i..][..3], &root[3 * j..][..3]);
+            let bend: Vec<f64> = (0..9).map(|k| product(k / 3, k % 3)).collect();
             let rows: Vec<Row<f64>> = g.chunks(4).map(|r| (r[..3].to_vec(), r[3])).collect();
             let mut cascade = Cascade::new(3);
             let condition = cascade.minimise(&rows, Some(&bend), 1e-12);
             let x = cascade.x();
             for k in 0..3 {
                 let slope: f64 =
-                    rows.iter().map(|(a, e)| a[k] * (dot(a, x) + e)).sum::<f64>() + bend[k] * x[k];
+                    rows.iter().map(|(a, e)| a[k] * (dot(a, x) + e)).sum::<f64>()
+                        + dot(&bend[3 * k..][..3], x);
                 prop_assert!(slope.abs() < 1e-13 * condition * condition, "{slope:e}");
             }
         }

@@ -221,19 +221,35 @@ fn every_command_of_the_readme_s_start_runs() {
 
 /// The schema of a case file at a path of keys; `None` where it knows no such key.
 fn schema_at<'a>(schema: &'a Value, keys: &[&str]) -> Option<&'a Value> {
-    let mut at = schema;
-    for key in keys {
+    schema_below(schema, schema, keys)
+}
+
+fn schema_below<'a>(whole: &'a Value, at: &'a Value, keys: &[&str]) -> Option<&'a Value> {
+    let Some((key, rest)) = keys.split_first() else { return Some(schema_in(whole, at)) };
+    let at = schema_in(whole, at);
+    let alternatives = at["oneOf"].as_array().map_or(&[][..], Vec::as_slice);
+    let alternatives = alternatives.iter().map(|at| schema_in(whole, at)).chain([at]);
+    let mut found = alternatives.filter_map(|at| {
         let next = at["properties"].get(key).or_else(|| at.get("additionalProperties"));
-        at = next.filter(|next| !next.is_boolean())?;
-        if let Some(reference) = at["$ref"].as_str() {
-            at = &schema["$defs"][reference.strip_prefix("#/$defs/")?];
-        }
-    }
-    Some(at)
+        schema_below(whole, next.filter(|next| !next.is_boolean())?, rest)
+    });
+    found.next()
+}
+
+/// What a reference leads to.
+fn schema_in<'a>(whole: &'a Value, at: &'a Value) -> &'a Value {
+    let name = at["$ref"].as_str().and_then(|path| path.strip_prefix("#/$defs/"));
+    name.map_or(at, |name| &whole["$defs"][name])
+}
+
+/// The schema of one kind of a part.
+fn of_kind<'a>(family: &'a Value, kind: &str) -> &'a Value {
+    let kinds = family["oneOf"].as_array().unwrap();
+    kinds.iter().find(|schema| schema["properties"]["kind"]["const"] == kind).unwrap()
 }
 
 fn schema() -> Value {
-    serde_json::from_str(&read("docs/case.schema.json")).unwrap()
+    freeplay::case::schema()
 }
 
 /// What the program says of a case with a key set to a word that it cannot know.
@@ -267,11 +283,18 @@ fn the_schema_of_cases_has_the_keys_that_the_program_reads() {
         let said = complaint(&format!("{table}{dot}zzzzzzzz"));
         let known = said.split("known here: ").nth(1).unwrap_or_else(|| panic!("{said}"));
         let mut known: Vec<&str> = known.lines().next().unwrap().split(", ").collect();
-        let in_schema = schema_at(&schema, &keys).unwrap()["properties"].as_object().unwrap();
+        let at = schema_at(&schema, &keys).unwrap();
+        let at = match table {
+            "joints.A" => of_kind(at, "revolute"),
+            "drives.crank" => of_kind(at, "speed"),
+            "loads.gravity" => of_kind(at, "gravity"),
+            _ => at,
+        };
+        let in_schema = at["properties"].as_object().unwrap();
         let mut told: Vec<&str> = in_schema.keys().map(String::as_str).collect();
         known.sort_unstable();
         told.sort_unstable();
-        assert_eq!(told, known, "{table} in docs/case.schema.json, and the keys that are read");
+        assert_eq!(told, known, "{table} in the schema, and the keys that are read");
     }
 }
 
@@ -279,13 +302,10 @@ fn the_schema_of_cases_has_the_keys_that_the_program_reads() {
 fn the_schema_of_cases_has_the_words_that_the_program_reads() {
     let schema = schema();
     for key in [
-        "joints.A.kind",
         "joints.A.clearance.tension",
         "joints.A.clearance.normal.law",
         "joints.A.clearance.normal.stiffness",
         "joints.A.clearance.friction.law",
-        "drives.crank.kind",
-        "loads.gravity.kind",
         "run.sampling",
         "solver.engine",
         "solver.norm",
@@ -298,14 +318,14 @@ fn the_schema_of_cases_has_the_words_that_the_program_reads() {
         let keys: Vec<&str> = key.split('.').collect();
         let at = schema_at(&schema, &keys).unwrap();
         let words = at.get("enum").unwrap_or_else(|| &at["oneOf"][1]["enum"]);
-        assert_eq!(words, &serde_json::json!(known), "{key} in docs/case.schema.json");
+        assert_eq!(words, &serde_json::json!(known), "{key} in the schema");
     }
 }
 
 #[test]
 fn the_schema_of_cases_knows_every_key_of_every_case() {
     let schema = schema();
-    for folder in ["cases", "tests/cases", "src/cli/new"] {
+    for folder in ["cases", "tests/cases", "tests/kinds", "src/cli/new"] {
         for entry in std::fs::read_dir(root().join(folder)).unwrap() {
             let path = entry.unwrap().path();
             let text = std::fs::read_to_string(&path).unwrap();
@@ -313,6 +333,29 @@ fn the_schema_of_cases_knows_every_key_of_every_case() {
             check_keys(&schema, case.as_table(), &mut Vec::new(), &path);
         }
     }
+}
+
+#[test]
+fn the_example_of_every_kind_has_its_keys() {
+    let schema = schema();
+    let families = [freeplay::joint::KINDS, freeplay::load::KINDS, freeplay::course::KINDS];
+    for kind in families.concat() {
+        let example: toml_edit::DocumentMut = kind.example.parse().unwrap();
+        assert!(kind.example.contains(kind.word), "{}", kind.word);
+        check_keys(&schema, example.as_table(), &mut Vec::new(), Path::new(kind.word));
+    }
+}
+
+#[test]
+fn the_tables_of_keys_are_those_that_the_program_prints() {
+    let printed = |arguments: &[&str]| {
+        said_by(Command::new(env!("CARGO_BIN_EXE_freeplay")).arg("schema").args(arguments))
+    };
+    let tables = printed(&["--markdown"]);
+    assert!(tables == read("docs/cases.md"), "freeplay schema --markdown > docs/cases.md");
+    let told = printed(&[]);
+    assert!(told == read("docs/case.schema.json"), "freeplay schema > docs/case.schema.json");
+    assert_eq!(serde_json::from_str::<Value>(&told).unwrap(), schema());
 }
 
 /// Every key of a table, and of those in it, is in the schema.

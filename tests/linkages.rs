@@ -61,7 +61,7 @@ fn loads(
         }
     };
     for (joint, observed) in model.joints().iter().zip(&sample.joints) {
-        let (pair, force) = (&joint.pair, vector(observed.force));
+        let (pair, force) = (&joint.ends.pair, vector(observed.force));
         let on_bearing = joint.clearance.map_or(0.0, |k| {
             -model.clearances()[k].bearing_radius * sample.clearances[k].tangential_force
         });
@@ -69,7 +69,7 @@ fn loads(
         put(pair.i, pair.s_i, -force, on_bearing);
     }
     for (drive, torque) in model.drives().iter().zip(&sample.drive_torques) {
-        let pair = &model.joints()[drive.joint].pair;
+        let pair = &model.joints()[drive.joint].ends.pair;
         put(pair.j, pair.s_j, Vector::zero(), *torque);
         put(pair.i, pair.s_i, Vector::zero(), -torque);
     }
@@ -77,12 +77,8 @@ fn loads(
 }
 
 fn gravity(case: &Case) -> Vector<f64> {
-    let falls = |load: &freeplay::model::LoadDescription| match &load.kind {
-        freeplay::model::LoadKind::Gravity { acceleration: [x, y] } => {
-            Vector::new(x.to_f64(), y.to_f64())
-        }
-    };
-    case.description.loads.iter().map(falls).fold(Vector::zero(), |sum, g| sum + g)
+    let falls = case.description.loads.iter().filter_map(|load| load.gravity()).map(vector);
+    falls.fold(Vector::zero(), |sum, g| sum + g)
 }
 
 #[test]

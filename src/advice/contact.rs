@@ -7,7 +7,6 @@
 //! The other joints of a body make it heavier there, so that contacts last no less than this.
 
 use super::Turn;
-use crate::load::Load;
 use crate::mechanism::Mechanism;
 
 /// Speed (m/s) of an impact where nothing tells one.
@@ -61,9 +60,8 @@ fn touch(mechanism: &Mechanism<f64>, turn: &Turn, k: usize) -> Option<Touch> {
 /// A typical speed of impacts (m/s).
 fn speed(mechanism: &Mechanism<f64>, radial: f64) -> f64 {
     let turning = radial * fastest_turn(mechanism);
-    let gravity = mechanism.model().loads().iter().map(|load| match load {
-        Load::Gravity(gravity) => gravity.acceleration.norm(),
-    });
+    let fields = mechanism.model().loads().iter().filter_map(|load| load.field());
+    let gravity = fields.map(|acceleration| acceleration.norm());
     let fall = (2.0 * radial * gravity.fold(0.0, f64::max)).sqrt();
     let speed = turning.max(fall);
     if speed > 0.0 { speed } else { SOME_SPEED }

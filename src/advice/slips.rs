@@ -2,9 +2,7 @@
 
 use super::Note;
 use crate::case::Case;
-use crate::model::{
-    BodyDescription, ClearanceDescription, Description, DriveKind, JointKind, LoadKind, NamedPoint,
-};
+use crate::model::{BodyDescription, ClearanceDescription, Description, NamedPoint};
 use std::f64::consts::TAU;
 
 /// The softest that metals, polymers and rubber are, and less (Pa).
@@ -28,8 +26,7 @@ pub(super) fn notes(case: &Case) -> Vec<Note> {
     let size = size_of(description);
     notes.extend(description.bodies.iter().filter_map(|body| inertia(body, size)));
     for joint in &description.joints {
-        let JointKind::Revolute { clearance } = &joint.kind;
-        if let Some(clearance) = clearance {
+        if let Some(clearance) = &joint.clearance {
             let key = format!("joints.{}.clearance", joint.name);
             notes.extend(clearance_notes(&key, clearance, description));
         }
@@ -74,10 +71,8 @@ fn inertia(body: &BodyDescription, size: f64) -> Option<Note> {
 /// The longest link or the largest bearing (m).
 fn size_of(description: &Description) -> f64 {
     let links = description.bodies.iter().flat_map(|body| links(&body.points));
-    let bearings = description.joints.iter().filter_map(|joint| {
-        let JointKind::Revolute { clearance } = &joint.kind;
-        Some(clearance.as_ref()?.bearing_radius.to_f64())
-    });
+    let bearings = description.joints.iter().filter_map(|joint| joint.clearance.as_ref());
+    let bearings = bearings.map(|clearance| clearance.bearing_radius.to_f64());
     links.chain(bearings).fold(0.0, f64::max)
 }
 
@@ -120,9 +115,9 @@ fn angles(description: &Description) -> Vec<Note> {
         let angle = start.angle.as_ref()?;
         Some((format!("start.{}.angle", start.body), angle.to_f64()))
     });
-    let drives = description.drives.iter().map(|drive| {
-        let DriveKind::Speed { angle, .. } = &drive.kind;
-        (format!("drives.{}.angle", drive.name), angle.to_f64())
+    let drives = description.drives.iter().filter_map(|drive| {
+        let angle = drive.part.decimal("angle")?;
+        Some((format!("drives.{}.angle", drive.name), angle.to_f64()))
     });
     let more = starts.chain(drives).filter(|(_, angle)| angle.abs() > 1.01 * TAU);
     let mut notes: Vec<Note> = more
@@ -136,8 +131,7 @@ fn angles(description: &Description) -> Vec<Note> {
         })
         .collect();
     notes.extend(description.drives.iter().filter_map(|drive| {
-        let DriveKind::Speed { speed_rpm, .. } = &drive.kind;
-        let speed = speed_rpm.to_f64();
+        let speed = drive.part.decimal("speed_rpm")?.to_f64();
         (speed.abs() > FASTEST).then(|| {
             let text = format!("{speed:e} revolutions a minute is very fast");
             Note::new(format!("drives.{}.speed_rpm", drive.name), text)
@@ -148,8 +142,8 @@ fn angles(description: &Description) -> Vec<Note> {
 
 fn loads(description: &Description) -> Vec<Note> {
     let strong = description.loads.iter().filter_map(|load| {
-        let LoadKind::Gravity { acceleration: [x, y] } = &load.kind;
-        let strength = x.to_f64().hypot(y.to_f64());
+        let [x, y] = load.gravity()?;
+        let strength = x.hypot(y);
         (strength > STRONGEST).then(|| {
             let text = format!("{strength} m/s² is more than any gravity: is it in m/s²?");
             Note::new(format!("loads.{}.acceleration", load.name), text)

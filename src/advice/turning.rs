@@ -2,9 +2,9 @@
 //! locks.
 
 use crate::case::{self, Case};
+use crate::course::Course;
 use crate::dae::Fault;
 use crate::mechanism::Mechanism;
-use crate::model::DriveKind;
 use crate::run::Assembled;
 use crate::simulate::{assemble, ideal_case};
 use std::f64::consts::TAU;
@@ -63,12 +63,9 @@ impl Turn {
 
 /// Turns the ideal mechanism of a case.
 pub fn turn(case: &Case) -> Turn {
-    let speeds = case.description.drives.iter().map(|drive| {
-        let DriveKind::Speed { speed_rpm, .. } = &drive.kind;
-        speed_rpm.to_f64().abs()
-    });
-    let slowest = speeds.filter(|speed| *speed > 0.0).fold(f64::INFINITY, f64::min);
-    if slowest.is_infinite() {
+    let courses = case.description.drives.iter().filter_map(|drive| Course::<f64>::of(&drive.part));
+    let once = courses.filter_map(|course| course.all()).fold(0.0, f64::max);
+    if once == 0.0 {
         return Turn::Still;
     }
     let mechanism = ideal_case(case).and_then(|ideal| assemble::<f64>(&ideal));
@@ -78,7 +75,7 @@ pub fn turn(case: &Case) -> Turn {
     };
     let freedoms = mechanism.freedoms();
     match Assembled::new(mechanism) {
-        Some(assembled) => walk(assembled, 60.0 / slowest),
+        Some(assembled) => walk(assembled, once),
         None => Turn::Free { freedoms },
     }
 }
@@ -134,7 +131,8 @@ fn locked(
     let mechanism: &Mechanism<f64> = at.mechanism();
     let model = mechanism.model();
     let drives = model.names().drives.iter().zip(model.drives());
-    let drives = drives.map(|(name, drive)| (name.clone(), drive.law.angle(from).rem_euclid(TAU)));
+    let drives =
+        drives.map(|(name, drive)| (name.clone(), drive.course.at(from)[0].rem_euclid(TAU)));
     Turn::Locks { time: from, drives: drives.collect(), why: reason(&fault), forces }
 }
 

@@ -1,21 +1,15 @@
 //! Case file to [`Description`]: which keys describe ground, bodies, joints, drives, loads, start.
 //!
-//! A new kind of joint, drive, load or friction law is a line in the table of its kinds here, and
-//! the function that reads its keys.
+//! Joints, courses of drives and loads say themselves which keys they take; of contact and friction
+//! laws the keys stand here.
 
 use super::table_reader::{ReadKind, TableReader};
 use crate::model::{
-    BodyDescription, ClearanceDescription, Description, DriveDescription, DriveKind,
-    FrictionDescription, JointDescription, JointKind, LoadDescription, LoadKind, NamedPoint,
-    NormalDescription, NormalLawName, StartDescription, StiffnessDescription, Tension,
+    BodyDescription, ClearanceDescription, Description, DriveDescription, FrictionDescription,
+    JointDescription, LoadDescription, NamedPoint, NormalDescription, NormalLawName,
+    StartDescription, StiffnessDescription, Tension,
 };
-use crate::scalar::Decimal;
-
-const JOINT_KINDS: [ReadKind<JointKind>; 1] = [("revolute", revolute)];
-
-const DRIVE_KINDS: [ReadKind<DriveKind>; 1] = [("speed", speed)];
-
-const LOAD_KINDS: [ReadKind<LoadKind>; 1] = [("gravity", gravity)];
+use crate::{course, joint, load};
 
 const FRICTION_LAWS: [ReadKind<FrictionDescription>; 1] = [("ambrosio", ambrosio)];
 
@@ -31,8 +25,8 @@ pub(super) fn description(root: &mut TableReader) -> Description {
     Description {
         ground: root.optional_table("ground", points).unwrap_or_default(),
         bodies: root.named_tables("bodies", body),
-        joints: root.named_tables("joints", joint),
-        drives: root.named_tables("drives", drive),
+        joints: root.named_tables("joints", joint).into_iter().flatten().collect(),
+        drives: root.named_tables("drives", drive).into_iter().flatten().collect(),
         loads: root.named_tables("loads", load).into_iter().flatten().collect(),
         start: root.named_tables("start", start),
     }
@@ -53,18 +47,13 @@ fn body(name: &str, keys: &mut TableReader) -> BodyDescription {
     }
 }
 
-fn joint(name: &str, keys: &mut TableReader) -> JointDescription {
-    JointDescription {
-        name: name.to_owned(),
-        between: keys.required("between", ""),
-        kind: keys
-            .variant("kind", &JOINT_KINDS, None)
-            .unwrap_or(JointKind::Revolute { clearance: None }),
-    }
-}
-
-fn revolute(keys: &mut TableReader) -> JointKind {
-    JointKind::Revolute { clearance: keys.optional_table("clearance", clearance) }
+fn joint(name: &str, keys: &mut TableReader) -> Option<JointDescription> {
+    let part = keys.part("kind", joint::KINDS, None)?;
+    let clearance = match part.is(joint::REVOLUTE) {
+        true => keys.optional_table("clearance", clearance),
+        false => None,
+    };
+    Some(JointDescription { name: name.to_owned(), part, clearance })
 }
 
 fn clearance(keys: &mut TableReader) -> ClearanceDescription {
@@ -113,29 +102,15 @@ fn ambrosio(keys: &mut TableReader) -> FrictionDescription {
     }
 }
 
-fn drive(name: &str, keys: &mut TableReader) -> DriveDescription {
-    let standing = || DriveKind::Speed { speed_rpm: Decimal::from(0.0), angle: Decimal::from(0.0) };
-    DriveDescription {
-        name: name.to_owned(),
-        joint: keys.required("joint", ""),
-        kind: keys.variant("kind", &DRIVE_KINDS, Some("speed")).unwrap_or_else(standing),
-    }
-}
-
-fn speed(keys: &mut TableReader) -> DriveKind {
-    DriveKind::Speed {
-        speed_rpm: keys.required("speed_rpm", "revolutions a minute"),
-        angle: keys.number_or("angle", "rad", "0.0"),
-    }
+fn drive(name: &str, keys: &mut TableReader) -> Option<DriveDescription> {
+    let joint = keys.required("joint", "");
+    let part = keys.part("kind", course::KINDS, Some("speed"))?;
+    Some(DriveDescription { name: name.to_owned(), joint, part })
 }
 
 fn load(name: &str, keys: &mut TableReader) -> Option<LoadDescription> {
-    let kind = keys.variant("kind", &LOAD_KINDS, None)?;
-    Some(LoadDescription { name: name.to_owned(), kind })
-}
-
-fn gravity(keys: &mut TableReader) -> LoadKind {
-    LoadKind::Gravity { acceleration: keys.required("acceleration", "m/s²") }
+    let part = keys.part("kind", load::KINDS, None)?;
+    Some(LoadDescription { name: name.to_owned(), part })
 }
 
 fn start(body: &str, keys: &mut TableReader) -> StartDescription {

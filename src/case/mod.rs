@@ -7,6 +7,7 @@ mod changes;
 mod error;
 mod mechanism;
 mod plan;
+mod schema;
 mod source;
 mod table_reader;
 #[cfg(test)]
@@ -15,6 +16,7 @@ mod tests;
 pub use changes::{Changes, NotAnOverride, Override};
 pub use error::Error;
 pub use plan::{AbsoluteTolerance, EngineName, NormName, Plan, Precision, Sampling, SolverPlan};
+pub use schema::{schema, tables};
 pub use source::{Located, Place};
 
 use crate::model::{Complaint, Complaints, Description, KeyPath, check};

@@ -1,9 +1,11 @@
 //! Reads the keys of one TOML table, and notes what is missing, of the wrong type or unknown.
 
 use super::DefaultTaken;
+use crate::course;
 use crate::model::{
     Complaint, KeyPath, MOST_TOLD, OfMaterials, did_you_mean, in_brackets, shortened,
 };
+use crate::parameter::{self, Key, Kind, Otherwise, Takes, Values};
 use crate::scalar::Decimal;
 use std::collections::HashSet;
 use toml_edit::{Item, Table, TableLike, Value};
@@ -115,6 +117,51 @@ impl FromItem for [String; 2] {
 
     fn placeholder() -> Self {
         [String::new(), String::new()]
+    }
+}
+
+/// A point, written `body.point`.
+struct Point(String);
+
+impl FromItem for Point {
+    const EXPECTED: &'static str = "a point \"body.point\"";
+
+    fn from_item(item: &Item) -> Option<Self> {
+        item.as_str().map(|point| Point(point.to_owned()))
+    }
+
+    fn placeholder() -> Self {
+        Point(String::new())
+    }
+}
+
+/// The name of a body, or `ground`.
+struct Body(String);
+
+impl FromItem for Body {
+    const EXPECTED: &'static str = "the name of a body, or \"ground\"";
+
+    fn from_item(item: &Item) -> Option<Self> {
+        item.as_str().map(|body| Body(body.to_owned()))
+    }
+
+    fn placeholder() -> Self {
+        Body(String::new())
+    }
+}
+
+/// Names of two bodies.
+struct TwoBodies([String; 2]);
+
+impl FromItem for TwoBodies {
+    const EXPECTED: &'static str = "two bodies [\"body\", \"body\"]";
+
+    fn from_item(item: &Item) -> Option<Self> {
+        pair(item, |value| value.as_str().map(str::to_owned)).map(TwoBodies)
+    }
+
+    fn placeholder() -> Self {
+        TwoBodies([String::new(), String::new()])
     }
 }
 
@@ -320,6 +367,88 @@ impl<'d> TableReader<'d, '_> {
         let chosen = self.choice(key, kinds, default);
         self.any_key |= chosen.is_none(); // which keys an unknown kind takes is not known
         chosen.map(|read| read(self))
+    }
+
+    /// The part whose kind a word chooses, with the values of the keys that its kind takes; `None`
+    /// after a complaint about the word.
+    pub fn part(
+        &mut self,
+        key: &'static str,
+        kinds: &[&'static Kind],
+        default: Option<&'static str>,
+    ) -> Option<Values> {
+        let words: Vec<(&str, &Kind)> = kinds.iter().map(|kind| (kind.word, *kind)).collect();
+        let chosen = self.choice(key, &words, default);
+        self.any_key |= chosen.is_none(); // which keys an unknown kind takes is not known
+        let kind = chosen?;
+        let mut values = Values::new(kind);
+        for key in kind.keys {
+            if let Some(value) = self.value(key) {
+                values = values.with(key.name, value);
+            }
+        }
+        Some(values)
+    }
+
+    /// The value of a key of a kind; what cannot be read has a placeholder.
+    fn value(&mut self, key: &'static Key) -> Option<parameter::Value> {
+        let Key { name, takes, unit, otherwise, .. } = key;
+        let there = self.table.is_some_and(|table| table.get(name).is_some());
+        match otherwise {
+            Otherwise::Absent if !there => {
+                self.asked.push(name);
+                return None;
+            }
+            Otherwise::Default(default) if !there => {
+                self.asked.push(name);
+                self.note_default(name, default);
+                let word = default.trim_matches('"');
+                return Some(match takes {
+                    Takes::Number(_) => parameter::Value::Number(Decimal::new(default).ok()?),
+                    _ => parameter::Value::Text(word.to_owned()),
+                });
+            }
+            _ => {}
+        }
+        Some(match takes {
+            Takes::Number(_) => parameter::Value::Number(self.required(name, unit)),
+            Takes::Vector(_) => parameter::Value::Vector(self.required(name, unit)),
+            Takes::Points => parameter::Value::Pair(self.required(name, "")),
+            Takes::Bodies => parameter::Value::Pair(self.required::<TwoBodies>(name, "").0),
+            Takes::Point => parameter::Value::Text(self.required::<Point>(name, "").0),
+            Takes::Body => parameter::Value::Text(self.required::<Body>(name, "").0),
+            Takes::Word(words) => {
+                let words: Vec<(&str, &str)> = words.iter().map(|word| (*word, *word)).collect();
+                parameter::Value::Text(
+                    self.choice(name, &words, None).unwrap_or_default().to_owned(),
+                )
+            }
+            Takes::Course => parameter::Value::Course(Box::new(self.course(name, unit))),
+        })
+    }
+
+    /// A course of time: a number, or a table with its kind.
+    fn course(&mut self, name: &'static str, unit: &str) -> Values {
+        let always =
+            |value| Values::new(course::CONSTANT).with("value", parameter::Value::Number(value));
+        match self.item(name) {
+            Some(item) if item.is_table_like() => {
+                let table = self.as_table(name, item);
+                let read = |keys: &mut TableReader| keys.part("kind", course::KINDS, None);
+                Self::read(self.path.key(name), table, self.findings, read)
+                    .unwrap_or_else(|| always(Decimal::placeholder()))
+            }
+            Some(item) => always(match Decimal::from_item(item) {
+                Some(number) => number,
+                None => {
+                    let (unit, found) = (in_brackets(unit), describe(item));
+                    let expected = "a number, or a table with the kind of a course";
+                    self.complain(name, format!("must be {expected}{unit}, is {found}"));
+                    Decimal::placeholder()
+                }
+            }),
+            None => always(self.required(name, unit)),
+        }
     }
 
     /// Says that checks of what stands in this table would mislead.

@@ -11,6 +11,7 @@ mod new;
 mod plot;
 mod report;
 mod run;
+mod schema;
 mod shown;
 mod signals;
 mod summary;
@@ -56,6 +57,8 @@ enum Command {
     Report(report::Arguments),
     /// Print what has a shell complete commands and options.
     Completions(completions::Arguments),
+    /// Print the JSON Schema of case files, for editors.
+    Schema(schema::Arguments),
     /// Write manual pages.
     Man(man::Arguments),
 }
@@ -184,6 +187,7 @@ pub fn main() -> ExitCode {
         Command::Export(arguments) => export::export(&arguments),
         Command::Report(arguments) => report::report(&arguments),
         Command::Completions(arguments) => completions::completions(&arguments),
+        Command::Schema(arguments) => schema::schema_of_cases(&arguments),
         Command::Man(arguments) => man::man(&arguments),
     };
     match done {

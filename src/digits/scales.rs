@@ -13,7 +13,6 @@
 //! length l and its rate ω these are ω, ω l, l, m l ω² and m l² ω². Where a quantity is zero but for
 //! rounding, that rounding is not what it is measured with.
 
-use crate::load::Load;
 use crate::mechanism::{Mechanism, Observation};
 use crate::scalar::Scalar;
 
@@ -76,12 +75,11 @@ impl Sizes {
     pub fn of<S: Scalar>(mechanism: &Mechanism<S>) -> Sizes {
         let model = mechanism.model();
         let length = mechanism.length();
-        let drives = model.drives().iter().map(|drive| drive.law.rate().to_f64().abs());
-        let falls = model.loads().iter().map(|load| match load {
-            Load::Gravity(gravity) => (gravity.acceleration.norm().to_f64() / length).sqrt(),
-        });
+        let mass = model.masses().iter().map(|mass| mass.to_f64()).sum();
+        let drives = model.drives().iter().map(|drive| drive.course.fastest());
+        let falls = model.loads().iter().map(|load| load.pace(mass, length));
         Sizes {
-            mass: model.masses().iter().map(|mass| mass.to_f64()).sum(),
+            mass,
             length,
             rate: drives.chain(falls).fold(0.0, f64::max),
             clearances: model.clearances().iter().map(|c| c.radial.to_f64()).collect(),

@@ -285,8 +285,7 @@ fn bodies_of_drive(file: &ResultFile, name: &str) -> Option<[String; 2]> {
     let case = Case::from_text(file.path(), text, &Changes::default()).ok()?;
     let drive = case.description.drives.iter().find(|drive| drive.name == name)?;
     let joint = case.description.joints.iter().find(|joint| joint.name == drive.joint)?;
-    let body = |point: &String| point.split('.').next().unwrap_or_default().to_owned();
-    Some([body(&joint.between[0]), body(&joint.between[1])])
+    Some(joint.between().map(|end| end.split('.').next().unwrap_or_default().to_owned()))
 }
 
 #[cfg(test)]

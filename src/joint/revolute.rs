@@ -7,9 +7,22 @@
 //! A multiplier λ (N) is the force the joint puts on body `i`, in the fixed frame; body `j` gets
 //! −λ (paper, eq. 14, 15).
 
-use super::{Block, Pair};
+use super::{BETWEEN, Block, Blocks, Ends, Holonomic, MOST_BODIES, MOST_ROWS, Pair, between};
+use crate::parameter::{Kind, Values};
 use crate::plane::{Motion, Pose, Vector, Wrench};
-use crate::scalar::Scalar;
+use crate::scalar::{Lift, Scalar};
+
+/// The kind and its keys; what a clearance takes stands with the clearances.
+pub const KIND: Kind = Kind {
+    word: "revolute",
+    title: "two points stay together, or, with a clearance, nearly so",
+    source: "",
+    example: r#"[joints.A0]
+kind = "revolute"
+between = ["ground.A0", "crank.A0"]"#,
+    keys: &[BETWEEN],
+    also: None,
+};
 
 /// The joint: the two points.
 #[derive(Debug, Clone, Copy)]
@@ -18,7 +31,21 @@ pub struct Revolute<S> {
     pub pair: Pair<S>,
 }
 
+impl<S: Scalar> Holonomic<S> for Revolute<S> {
+    const ROWS: usize = 2;
+
+    fn error<T: Lift<S>>(&self, poses: &[Pose<T>; MOST_BODIES]) -> [T; MOST_ROWS] {
+        let gap = between(&self.pair, poses);
+        [gap.x, gap.y, T::zero()]
+    }
+}
+
 impl<S: Scalar> Revolute<S> {
+    /// The joint where it sits.
+    pub fn new(_: &Values, ends: &Ends<S>) -> Self {
+        Revolute { pair: ends.pair }
+    }
+
     /// A_i s_i and A_j s_j: from the mass centres to the points (m), fixed frame.
     #[inline(always)]
     pub fn arms(&self, poses: &[Pose<S>]) -> [Vector<S>; 2] {
@@ -55,12 +82,13 @@ impl<S: Scalar> Revolute<S> {
 
     /// Φ_q of one row.
     #[inline(always)]
-    pub fn jacobian(row: usize, arms: &[Vector<S>; 2]) -> [Block<S>; 2] {
+    pub fn jacobian(row: usize, arms: &[Vector<S>; 2]) -> Blocks<S> {
         let [arm_i, arm_j] = *arms;
         let (one, zero) = (S::one(), S::zero());
+        let none: Block<S> = [zero; 3];
         match row {
-            0 => [[-one, zero, arm_i.y], [one, zero, -arm_j.y]],
-            _ => [[zero, -one, -arm_i.x], [zero, one, arm_j.x]],
+            0 => [[-one, zero, arm_i.y], [one, zero, -arm_j.y], none],
+            _ => [[zero, -one, -arm_i.x], [zero, one, arm_j.x], none],
         }
     }
 

@@ -3,32 +3,59 @@
 //! F = m g,   V = −m g·(r − r₀)
 //! ```
 
-use crate::plane::{Pose, Vector, Wrench};
-use crate::scalar::Scalar;
+use super::{Acts, Ends};
+use crate::parameter::{Key, Kind, Otherwise, Range, Takes, Values};
+use crate::plane::{Motion, Pose, Vector, Wrench};
+use crate::scalar::{Lift, Scalar};
 
-/// The field.
+/// The kind and its keys.
+pub const KIND: Kind = Kind {
+    word: "gravity",
+    title: "a uniform field of gravity",
+    source: "",
+    example: r#"[loads.gravity]
+kind = "gravity"
+acceleration = [0.0, -9.81]"#,
+    keys: &[Key {
+        name: "acceleration",
+        takes: Takes::Vector(Range::Any),
+        unit: "m/s²",
+        otherwise: Otherwise::Required,
+        about: "acceleration of free fall, fixed frame",
+    }],
+    also: None,
+};
+
+/// Acceleration of free fall g (m/s²), fixed frame, and where potential energy is zero (m).
 #[derive(Debug, Clone, Copy)]
 pub struct Gravity<S> {
-    /// Acceleration of free fall g (m/s²), fixed frame.
-    pub acceleration: Vector<S>,
-    /// Where potential energy is zero (m).
-    pub datum: Vector<S>,
+    acceleration: Vector<S>,
+    datum: Vector<S>,
 }
 
 impl<S: Scalar> Gravity<S> {
-    /// Adds the weight of each body (N).
-    #[inline(always)]
-    pub fn apply(&self, masses: &[S], wrenches: &mut [Wrench<S>]) {
-        for (wrench, mass) in wrenches.iter_mut().zip(masses) {
-            wrench.force += self.acceleration * *mass;
-        }
+    /// The field that these values describe.
+    pub fn new(values: &Values, ends: &Ends<S>) -> Self {
+        let [x, y] = values.vector("acceleration");
+        Gravity { acceleration: Vector::new(x, y), datum: ends.datum }
+    }
+}
+
+impl<S: Scalar> Acts<S> for Gravity<S> {
+    fn wrenches<T: Lift<S>>(
+        &self,
+        _: S,
+        _: &[Pose<T>; 2],
+        _: &[Motion<T>; 2],
+    ) -> [Wrench<T>; 2] {
+        [Wrench::none(); 2]
     }
 
-    /// Potential energy (J), zero at the datum.
-    pub fn potential_energy(&self, masses: &[S], poses: &[Pose<S>]) -> S {
-        let weigh = |(mass, pose): (&S, &Pose<S>)| {
-            *mass * self.acceleration.dot(pose.position - self.datum)
-        };
-        -masses.iter().zip(poses).map(weigh).fold(S::zero(), |sum, v| sum + v)
+    fn field(&self) -> Option<(Vector<S>, Vector<S>)> {
+        Some((self.acceleration, self.datum))
+    }
+
+    fn pace(&self, _: f64, length: f64) -> f64 {
+        (self.acceleration.norm().to_f64() / length).sqrt()
     }
 }

@@ -1,32 +1,209 @@
 //! Gravity and whatever else acts on bodies, one file a load.
+//!
+//! A load acts on two bodies, as a function of time and of how they stand and move, or as a field
+//! of acceleration on all of them. The slopes that an implicit engine wants follow by dual numbers.
 
-mod gravity;
+use crate::course::Course;
+use crate::joint::Pair;
+use crate::parameter::{Values, kinds};
+use crate::plane::{Motion, Pose, Vector, Wrench};
+use crate::scalar::{Dual, Lift, Scalar};
 
-pub use gravity::Gravity;
+kinds! { $
+    /// A load of any kind.
+    Law, each_law:
+    Gravity in gravity,
+    Force in force,
+    Torque in torque,
+    Spring in spring,
+    TorsionSpring in torsion_spring,
+}
 
-use crate::plane::{Pose, Wrench};
-use crate::scalar::Scalar;
+/// The word of the load that is a field of gravity.
+pub const GRAVITY: &str = gravity::KIND.word;
 
-/// A load.
+/// Where a load sits, and what of the model it needs.
 #[derive(Debug, Clone, Copy)]
-pub enum Load<S> {
-    /// A uniform field.
-    Gravity(Gravity<S>),
+pub struct Ends<S> {
+    /// First and second body, and points on them.
+    pub pair: Pair<S>,
+    /// Where potential energy in a field is zero (m).
+    pub datum: Vector<S>,
+}
+
+/// Powers of a load (W).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Powers<S> {
+    /// What it puts in.
+    pub work: S,
+    /// What it dissipates.
+    pub dissipation: S,
+}
+
+/// What a load does to its two bodies.
+pub trait Acts<S: Scalar>: Copy {
+    /// What it puts on first and second body (N, N m), where they stand and move so.
+    fn wrenches<T: Lift<S>>(
+        &self,
+        time: S,
+        poses: &[Pose<T>; 2],
+        motions: &[Motion<T>; 2],
+    ) -> [Wrench<T>; 2];
+
+    /// Potential energy (J).
+    fn potential_energy(&self, poses: &[Pose<S>; 2]) -> S {
+        let _ = poses;
+        S::zero()
+    }
+
+    /// Its powers; those of a load that conserves energy are zero.
+    fn powers(&self, time: S, poses: &[Pose<S>; 2], motions: &[Motion<S>; 2]) -> Powers<S> {
+        let _ = (time, poses, motions);
+        Powers { work: S::zero(), dissipation: S::zero() }
+    }
+
+    /// The acceleration (m/s²) that it gives every body, and where its potential is zero (m).
+    fn field(&self) -> Option<(Vector<S>, Vector<S>)> {
+        None
+    }
+
+    /// The course of time in it.
+    fn course(&self) -> Option<&Course<S>> {
+        None
+    }
+
+    /// A rate (rad/s) of the motion that it makes a mass (kg) go through, over a length (m).
+    fn pace(&self, mass: f64, length: f64) -> f64;
+}
+
+/// A load of a model.
+#[derive(Debug, Clone, Copy)]
+pub struct Load<S> {
+    law: Law<S>,
+    bodies: [usize; 2],
+    field: Option<(Vector<S>, Vector<S>)>,
 }
 
 impl<S: Scalar> Load<S> {
-    /// Adds what the load puts on each body (N, N m); `masses` (kg) and `wrenches` are by body.
+    /// The load that these values describe, where it sits; `None` for what is no load.
+    pub fn new(values: &Values, ends: &Ends<S>) -> Option<Self> {
+        let law = Law::new(values, ends)?;
+        let field = each_law!(&law, law => law.field());
+        Some(Load { law, bodies: [ends.pair.i, ends.pair.j], field })
+    }
+
+    /// Its two bodies; `None` of a field.
+    pub fn bodies(&self) -> Option<[usize; 2]> {
+        self.field.is_none().then_some(self.bodies)
+    }
+
+    /// The acceleration (m/s²) of a field.
+    pub fn field(&self) -> Option<Vector<S>> {
+        self.field.map(|(acceleration, _)| acceleration)
+    }
+
+    /// The course of time in it.
+    pub fn course(&self) -> Option<&Course<S>> {
+        each_law!(&self.law, law => law.course())
+    }
+
+    /// A rate (rad/s) of the motion that it makes a mass (kg) go through, over a length (m).
+    pub fn pace(&self, mass: f64, length: f64) -> f64 {
+        each_law!(&self.law, law => law.pace(mass, length))
+    }
+
+    /// Adds what the load puts on each body (N, N m); `masses` (kg), poses, motions and wrenches
+    /// are by body.
     #[inline(always)]
-    pub fn apply(&self, masses: &[S], wrenches: &mut [Wrench<S>]) {
-        match self {
-            Load::Gravity(gravity) => gravity.apply(masses, wrenches),
+    pub fn apply(
+        &self,
+        time: S,
+        masses: &[S],
+        poses: &[Pose<S>],
+        motions: &[Motion<S>],
+        wrenches: &mut [Wrench<S>],
+    ) {
+        if let Some((acceleration, _)) = self.field {
+            for (wrench, mass) in wrenches.iter_mut().zip(masses) {
+                wrench.force += acceleration * *mass;
+            }
+            return;
         }
+        let (poses, motions) = self.of(poses, motions);
+        let on = each_law!(&self.law, law => law.wrenches(time, &poses, &motions));
+        for (body, wrench) in self.bodies.into_iter().zip(on) {
+            wrenches[body] += wrench;
+        }
+    }
+
+    /// Slopes of the wrenches on both bodies by coordinate `c` (x, y, θ) of one of them, and by its
+    /// rate.
+    pub fn slopes(
+        &self,
+        time: S,
+        poses: &[Pose<S>],
+        motions: &[Motion<S>],
+        place: (usize, usize),
+    ) -> [[Wrench<S>; 2]; 2] {
+        let (poses, motions) = self.of(poses, motions);
+        let constant = |m: &Motion<S>| Motion {
+            linear: Vector::new(Dual::from_re(m.linear.x), Dual::from_re(m.linear.y)),
+            angular: Dual::from_re(m.angular),
+        };
+        let motions = motions.each_ref().map(constant);
+        let seeded = crate::joint::seeded(&poses, place);
+        let still = seeded.map(|pose| Pose {
+            position: Vector::new(
+                Dual::from_re(pose.position.x.re),
+                Dual::from_re(pose.position.y.re),
+            ),
+            angle: Dual::from_re(pose.angle.re),
+            cos: Dual::from_re(pose.cos.re),
+            sin: Dual::from_re(pose.sin.re),
+        });
+        let mut faster = motions;
+        let motion = &mut faster[place.0];
+        match place.1 {
+            0 => motion.linear.x.eps = S::one(),
+            1 => motion.linear.y.eps = S::one(),
+            _ => motion.angular.eps = S::one(),
+        }
+        let slope = |w: Wrench<Dual<S>>| Wrench {
+            force: Vector::new(w.force.x.eps, w.force.y.eps),
+            moment: w.moment.eps,
+        };
+        [(&seeded, &motions), (&still, &faster)].map(|(poses, motions)| {
+            each_law!(&self.law, law => law.wrenches(time, poses, motions)).map(slope)
+        })
     }
 
     /// Potential energy (J).
     pub fn potential_energy(&self, masses: &[S], poses: &[Pose<S>]) -> S {
-        match self {
-            Load::Gravity(gravity) => gravity.potential_energy(masses, poses),
-        }
+        let Some((acceleration, datum)) = self.field else {
+            let poses = self.bodies.map(|body| poses[body]);
+            return each_law!(&self.law, law => law.potential_energy(&poses));
+        };
+        let weigh = |(mass, pose): (&S, &Pose<S>)| *mass * acceleration.dot(pose.position - datum);
+        -masses.iter().zip(poses).map(weigh).fold(S::zero(), |sum, v| sum + v)
     }
+
+    /// Its powers (W).
+    pub fn powers(&self, time: S, poses: &[Pose<S>], motions: &[Motion<S>]) -> Powers<S> {
+        let (poses, motions) = self.of(poses, motions);
+        each_law!(&self.law, law => law.powers(time, &poses, &motions))
+    }
+
+    fn of(&self, poses: &[Pose<S>], motions: &[Motion<S>]) -> ([Pose<S>; 2], [Motion<S>; 2]) {
+        (self.bodies.map(|body| poses[body]), self.bodies.map(|body| motions[body]))
+    }
+}
+
+/// A vector of parameters in a richer arithmetic.
+fn lift<S: Scalar, T: Lift<S>>(v: Vector<S>) -> Vector<T> {
+    Vector::new(T::lift(v.x), T::lift(v.y))
+}
+
+/// A torque (N m) on the second body, and its reaction on the first.
+fn torque_on_second<T: Scalar>(torque: T) -> [Wrench<T>; 2] {
+    [-torque, torque].map(|moment| Wrench { force: Vector::zero(), moment })
 }

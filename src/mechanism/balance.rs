@@ -4,6 +4,7 @@ use super::layout::{Coupling, Role};
 use super::{Mechanism, Touch};
 use crate::clearance::Mode;
 use crate::linear::{self, Singular};
+use crate::load::Powers;
 use crate::plane::{Motion, Vector, Wrench};
 use crate::scalar::Scalar;
 
@@ -15,7 +16,8 @@ impl<S: Scalar> Mechanism<S> {
         let now = &mut self.now;
         now.wrenches.fill(Wrench::none());
         for load in self.model.loads() {
-            load.apply(self.model.masses(), &mut now.wrenches);
+            let masses = self.model.masses();
+            load.apply(now.time, masses, &now.poses, &now.motions, &mut now.wrenches);
         }
         for (k, clearance) in self.model.clearances().iter().enumerate() {
             let Mode::Contact(contact) = &self.modes[k] else {
@@ -58,8 +60,16 @@ impl<S: Scalar> Mechanism<S> {
             self.factor()?;
             let now = &mut self.now;
             for (row, arms) in self.layout.constraints.iter().zip(&now.arms) {
-                let error = &mut now.lambda[row.first..row.first + row.constraint.rows()];
-                row.constraint.acceleration_error(arms, &now.motions, &now.accelerations, error);
+                let (motions, accelerations) = (&now.motions, &now.accelerations);
+                let error = &mut now.lambda[row.range()];
+                row.constraint.acceleration_error(
+                    now.time,
+                    arms,
+                    &now.poses,
+                    motions,
+                    accelerations,
+                    error,
+                );
             }
             linear::solve_symmetric(&self.now.matrix, self.layout.rows, &mut self.now.lambda);
             self.apply_multipliers();
@@ -73,12 +83,12 @@ impl<S: Scalar> Mechanism<S> {
         Ok(())
     }
 
-    /// Finds the arms of the joints, as placed.
+    /// Finds the arms of the joints and Φ_q, as placed.
     #[inline(always)]
     pub(super) fn reach(&mut self) {
         let now = &mut self.now;
         for (row, arms) in self.layout.constraints.iter().zip(&mut now.arms) {
-            *arms = row.constraint.arms(&now.poses);
+            row.constraint.reach(&now.poses, arms, &mut now.jacobian[row.range()]);
         }
     }
 
@@ -87,11 +97,8 @@ impl<S: Scalar> Mechanism<S> {
     pub(super) fn apply_multipliers(&mut self) {
         let now = &mut self.now;
         for (row, arms) in self.layout.constraints.iter().zip(&now.arms) {
-            let lambda = &now.lambda[row.first..row.first + row.constraint.rows()];
-            let on = row.constraint.wrenches(arms, lambda);
-            for (body, wrench) in row.constraint.bodies().into_iter().zip(on) {
-                now.wrenches[body] += wrench;
-            }
+            let (slopes, lambda) = (&now.jacobian[row.range()], &now.lambda[row.range()]);
+            row.constraint.act(arms, slopes, lambda, &mut now.wrenches);
         }
     }
 
@@ -99,17 +106,21 @@ impl<S: Scalar> Mechanism<S> {
     pub(super) fn factor(&mut self) -> Result<(), Singular> {
         self.reach();
         let (m, now) = (self.layout.rows, &mut self.now);
-        for (row, arms) in self.layout.constraints.iter().zip(&now.arms) {
-            for r in 0..row.constraint.rows() {
-                now.jacobian[row.first + r] = row.constraint.jacobian(r, arms);
-            }
-        }
         now.matrix.fill(S::zero());
         for coupling in &self.layout.couplings {
             let Coupling { row, column, sides, at, translation } = *coupling;
             let (a, b) = (&now.jacobian[row][sides[0]], &now.jacobian[column][sides[1]]);
             let turning = a[2] * b[2] * self.inverse_masses[at + 2];
             let sum = now.matrix[row * m + column] + translation + turning;
+            now.matrix[row * m + column] = sum;
+            now.matrix[column * m + row] = sum;
+        }
+        for coupling in &self.layout.uneven_couplings {
+            let Coupling { row, column, sides, at, .. } = *coupling;
+            let (a, b) = (&now.jacobian[row][sides[0]], &now.jacobian[column][sides[1]]);
+            let along = (a[0] * b[0] + a[1] * b[1]) * self.inverse_masses[at];
+            let turning = a[2] * b[2] * self.inverse_masses[at + 2];
+            let sum = now.matrix[row * m + column] + along + turning;
             now.matrix[row * m + column] = sum;
             now.matrix[column * m + row] = sum;
         }
@@ -121,7 +132,7 @@ impl<S: Scalar> Mechanism<S> {
     pub(super) fn drive(&mut self) {
         for index in (0..self.layout.driven.len()).rev() {
             let driven = self.layout.driven[index];
-            let (pair, _) = self.driving(driven.drive);
+            let pair = self.model.joints()[driven.joint].ends.pair;
             let (s_base, s_own) =
                 if driven.second { (pair.s_i, pair.s_j) } else { (pair.s_j, pair.s_i) };
             let now = &mut self.now;
@@ -153,19 +164,31 @@ impl<S: Scalar> Mechanism<S> {
         constraint.map_or(S::zero(), |row| -self.now.lambda[row.first])
     }
 
-    /// Powers of the drives and of the dissipation in each clearance (W).
+    /// Powers of the drives, of the dissipation in each clearance and of the loads (W).
     pub(super) fn measure_powers(&mut self) {
         let mut driving = S::zero();
         for (index, drive) in self.model.drives().iter().enumerate() {
-            driving += self.drive_torque(index) * drive.law.rate();
+            driving += self.drive_torque(index) * drive.course.rate(self.now.time);
         }
-        self.now.powers[0] = driving;
+        self.now.powers[self.ledger.drives()] = driving;
         for (k, touch) in self.now.touches.iter().enumerate() {
-            self.now.powers[1 + k] = touch.as_ref().map_or(S::zero(), |touch| {
+            self.now.powers[self.ledger.clearance(k)] = touch.as_ref().map_or(S::zero(), |touch| {
                 let force = &touch.force;
                 (force.normal.value - force.normal.elastic) * touch.rates.rate
                     - force.tangential * touch.rates.slip
             });
+        }
+        if let Some([work, dissipation]) = self.ledger.loads() {
+            let now = &mut self.now;
+            let none = Powers { work: S::zero(), dissipation: S::zero() };
+            let sum = self.model.loads().iter().fold(none, |sum, load| {
+                let powers = load.powers(now.time, &now.poses, &now.motions);
+                Powers {
+                    work: sum.work + powers.work,
+                    dissipation: sum.dissipation + powers.dissipation,
+                }
+            });
+            (now.powers[work], now.powers[dissipation]) = (sum.work, sum.dissipation);
         }
     }
 }

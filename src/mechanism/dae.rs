@@ -35,9 +35,11 @@ impl<S: Scalar> Mechanism<S> {
         }
         let now = &self.now;
         for (row, arms) in self.layout.constraints.iter().zip(&now.arms) {
+            let (motions, accelerations) = (&now.motions, &now.accelerations);
             let at = 2 * n + row.first;
             let error = &mut r[at..at + row.constraint.rows()];
-            row.constraint.acceleration_error(arms, &now.motions, &now.accelerations, error);
+            let poses = &now.poses;
+            row.constraint.acceleration_error(t, arms, poses, motions, accelerations, error);
         }
     }
 
@@ -92,6 +94,7 @@ impl Dae for Mechanism<f64> {
         for clearance in 0..self.modes.len() {
             self.contact_entries(clearance, j);
         }
+        self.load_entries(j);
         self.constraint_entries(cj, j);
         Ok(())
     }
@@ -121,6 +124,25 @@ impl Mechanism<f64> {
         }
     }
 
+    /// −M⁻¹ ∂Q/∂(q, v) of the loads.
+    fn load_entries(&self, j: &mut DMatrixViewMut<'_, f64>) {
+        let (n, now) = (self.layout.coordinates, &self.now);
+        for load in self.model.loads() {
+            let Some(bodies) = load.bodies() else { continue };
+            for (side, body) in bodies.into_iter().enumerate() {
+                let Some(at) = self.place_in_q(body) else { continue };
+                for c in 0..3 {
+                    let place = (side, c);
+                    let [by_q, by_v] = load.slopes(now.time, &now.poses, &now.motions, place);
+                    for (on, (by_q, by_v)) in bodies.into_iter().zip(by_q.iter().zip(&by_v)) {
+                        self.subtract(on, at + c, by_q, j);
+                        self.subtract(on, n + at + c, by_v, j);
+                    }
+                }
+            }
+        }
+    }
+
     /// Subtracts M⁻¹ of a change of a body's wrench in one column.
     fn subtract(
         &self,
@@ -141,30 +163,30 @@ impl Mechanism<f64> {
     fn constraint_entries(&self, cj: f64, j: &mut DMatrixViewMut<'_, f64>) {
         let n = self.layout.coordinates;
         let now = &self.now;
-        for (row, arms) in self.layout.constraints.iter().zip(&now.arms) {
+        for row in &self.layout.constraints {
             let constraint = &row.constraint;
             let bodies = constraint.bodies().map(|body| self.place_in_q(body));
-            let lambda = &now.lambda[row.first..row.first + constraint.rows()];
-            let by_angle = constraint.d_wrenches(&now.poses, lambda);
-            for (at, by_angle) in bodies.into_iter().zip(by_angle) {
-                let Some(at) = at else { continue };
-                j[(n + at + 2, at + 2)] += self.inverse_masses[at + 2] * by_angle;
-            }
-            for r in 0..constraint.rows() {
+            let place = |(side, c): (usize, usize)| Some(bodies[side]? + c);
+            constraint.bend(&now.poses, &now.lambda[row.range()], |of, by, entry| {
+                let (Some(of), Some(by)) = (place(of), place(by)) else { return };
+                j[(n + of, by)] += self.inverse_masses[of] * entry;
+            });
+            for (r, blocks) in now.jacobian[row.range()].iter().enumerate() {
                 let equation = 2 * n + row.first + r;
-                let blocks = constraint.jacobian(r, arms);
-                let bias =
-                    constraint.d_acceleration(r, &now.poses, &now.motions, &now.accelerations);
-                for (side, at) in bodies.into_iter().enumerate() {
+                for (at, block) in bodies.into_iter().zip(blocks) {
                     let Some(at) = at else { continue };
-                    for (c, entry) in blocks[side].into_iter().enumerate() {
+                    for (c, entry) in block.iter().enumerate() {
                         j[(n + at + c, equation)] += self.inverse_masses[at + c] * entry;
                         j[(equation, n + at + c)] += cj * entry;
                     }
-                    j[(equation, at + 2)] += bias[side][0];
-                    j[(equation, n + at + 2)] += bias[side][1];
                 }
             }
+            let (poses, motions, accelerations) = (&now.poses, &now.motions, &now.accelerations);
+            constraint.acceleration_slopes(poses, motions, accelerations, |r, by, [q, v]| {
+                let (equation, Some(by)) = (2 * n + row.first + r, place(by)) else { return };
+                j[(equation, by)] += q;
+                j[(equation, n + by)] += v;
+            });
         }
     }
 }

@@ -4,9 +4,9 @@
 //! function of time. Every other body has three coordinates (paper, eq. 16 counts them less the
 //! constraints).
 
-use crate::joint::{Constraint, Revolute};
+use crate::joint::{AngleDrive, Constraint, Derived, MOST_BODIES, Pair, Relation, Travel};
 use crate::model::{Complaint, GROUND, KeyPath, Model};
-use crate::plane::Vector;
+use crate::plane::{Pose, Vector};
 use crate::scalar::Scalar;
 
 /// What a body is to the equations.
@@ -30,6 +30,8 @@ pub(super) struct DrivenBody {
     pub joint: usize,
     /// Whether the driven body is the second of its joint.
     pub second: bool,
+    /// Whether it has an angular acceleration.
+    pub accelerates: bool,
 }
 
 /// Where a constraint comes from.
@@ -53,12 +55,21 @@ pub(super) struct Coupling<S> {
     pub row: usize,
     /// At most `row`.
     pub column: usize,
-    /// Whether the body is the first (0) or the second (1) of each row's constraint.
+    /// Whether the body is the first (0), second (1) or third (2) of each row's constraint.
     pub sides: [usize; 2],
     /// Its place in v.
     pub at: usize,
-    /// What its translation adds to the entry (1/kg), wherever it stands.
+    /// What its translation adds to the entry (1/kg), wherever it stands; zero where that is not a
+    /// constant.
     pub translation: S,
+}
+
+impl<S: Scalar> Row<S> {
+    /// Places of its rows among the multipliers.
+    #[inline(always)]
+    pub fn range(&self) -> std::ops::Range<usize> {
+        self.first..self.first + self.constraint.rows()
+    }
 }
 
 /// The unknowns and equations of a model.
@@ -69,7 +80,10 @@ pub(super) struct Layout<S> {
     /// Each after its base.
     pub driven: Vec<DrivenBody>,
     pub constraints: Vec<Row<S>>,
+    /// Of rows whose coefficients at ẋ and ẏ are constants.
     pub couplings: Vec<Coupling<S>>,
+    /// Of the other rows.
+    pub uneven_couplings: Vec<Coupling<S>>,
     /// Number n of coordinates.
     pub coordinates: usize,
     /// Number m of constraint rows.
@@ -117,8 +131,16 @@ impl<S: Scalar> Layout<S> {
         }
         match complaints.is_empty() {
             true => {
-                let couplings = couplings(&constraints, &roles, model.masses());
-                Ok(Layout { roles, driven, constraints, couplings, coordinates, rows })
+                let (couplings, uneven_couplings) = couplings(&constraints, &roles, model.masses());
+                Ok(Layout {
+                    roles,
+                    driven,
+                    constraints,
+                    couplings,
+                    uneven_couplings,
+                    coordinates,
+                    rows,
+                })
             }
             false => Err(complaints),
         }
@@ -131,28 +153,38 @@ impl<S: Scalar> Layout<S> {
     }
 }
 
-/// Which rows share which bodies, lower triangle.
-fn couplings<S: Scalar>(constraints: &[Row<S>], roles: &[Role], masses: &[S]) -> Vec<Coupling<S>> {
+/// Which rows share which bodies, lower triangle: those with constant coefficients at ẋ and ẏ, and
+/// the others.
+fn couplings<S: Scalar>(
+    constraints: &[Row<S>],
+    roles: &[Role],
+    masses: &[S],
+) -> (Vec<Coupling<S>>, Vec<Coupling<S>>) {
+    let poses = vec![Pose::fixed(); roles.len()];
     let mut all = Vec::new();
     for row in constraints {
+        let mut slopes = vec![[[S::zero(); 3]; MOST_BODIES]; row.constraint.rows()];
+        if row.constraint.moves_evenly() {
+            row.constraint.reach(&poses, &mut [Vector::zero(); 2], &mut slopes);
+        }
         for (side, body) in row.constraint.bodies().into_iter().enumerate() {
-            for r in 0..row.constraint.rows() {
-                // the coefficients at ẋ and ẏ do not depend on the arms
-                let block = row.constraint.jacobian(r, &[Vector::zero(); 2])[side];
-                all.push((row.first + r, side, body, Vector::new(block[0], block[1])));
+            for (r, blocks) in slopes.iter().enumerate() {
+                let along = Vector::new(blocks[side][0], blocks[side][1]);
+                all.push((row.first + r, side, body, along, row.constraint.moves_evenly()));
             }
         }
     }
-    let mut found = Vec::new();
-    for &(row, side, body, along) in &all {
+    let (mut even, mut uneven) = (Vec::new(), Vec::new());
+    for &(row, side, body, along, evenly) in &all {
         let Role::Free(at) = roles[body] else { continue };
-        for &(column, other, _, across) in all.iter().filter(|(c, _, b, _)| *c <= row && *b == body)
-        {
+        let shares = all.iter().filter(|(column, _, of, ..)| *column <= row && *of == body);
+        for &(column, other, _, across, also) in shares {
+            let list = if evenly && also { &mut even } else { &mut uneven };
             let translation = along.dot(across) / masses[body];
-            found.push(Coupling { row, column, sides: [side, other], at, translation });
+            list.push(Coupling { row, column, sides: [side, other], at, translation });
         }
     }
-    found
+    (even, uneven)
 }
 
 /// The key of a joint or a drive.
@@ -172,7 +204,7 @@ fn prescribed_twice<S: Scalar>(model: &Model<S>, origin: Origin) -> Complaint {
     }
 }
 
-/// Bodies that turn on the ground or on a driven body, by a drive on an ideal joint.
+/// Bodies that turn on the ground or on a driven body, by a drive on an ideal revolute joint.
 fn driven_bodies<S: Scalar>(model: &Model<S>) -> Vec<DrivenBody> {
     let mut found: Vec<DrivenBody> = Vec::new();
     loop {
@@ -181,13 +213,17 @@ fn driven_bodies<S: Scalar>(model: &Model<S>) -> Vec<DrivenBody> {
         };
         let next = model.drives().iter().enumerate().find_map(|(drive, law)| {
             let joint = &model.joints()[law.joint];
-            let (i, j) = (joint.pair.i, joint.pair.j);
-            if joint.clearance.is_some() || known(i, &found) == known(j, &found) {
+            let (i, j) = (joint.ends.pair.i, joint.ends.pair.j);
+            let turns =
+                matches!(joint.relation, Relation::Revolute(_)) && joint.clearance.is_none();
+            if !turns || known(i, &found) == known(j, &found) {
                 return None;
             }
             let second = known(i, &found);
             let (base, body) = if second { (i, j) } else { (j, i) };
-            Some(DrivenBody { body, base, drive, joint: law.joint, second })
+            let accelerates = law.course.accelerates()
+                || found.iter().any(|driven| driven.body == base && driven.accelerates);
+            Some(DrivenBody { body, base, drive, joint: law.joint, second, accelerates })
         });
         match next {
             Some(driven) => found.push(driven),
@@ -203,10 +239,21 @@ fn equations<S: Scalar>(model: &Model<S>, driven: &[DrivenBody]) -> Vec<(Constra
     });
     let drives = (model.drives().iter().enumerate())
         .filter(|(index, _)| driven.iter().all(|driven| driven.drive != *index));
+    let driving = |(index, drive): (usize, &crate::model::Drive<S>)| {
+        let joint = &model.joints()[drive.joint];
+        let (course, Pair { i, j, .. }) = (drive.course, joint.ends.pair);
+        let constraint = match joint.relation {
+            Relation::Prismatic(slide) => {
+                Constraint::Derived(Derived::travel(Travel { slide, course }, &joint.ends))
+            }
+            _ => Constraint::Drive(AngleDrive { i, j, course }),
+        };
+        (constraint, Origin::Drive(index))
+    };
     joints
         .map(|(index, joint)| {
-            (Constraint::Revolute(Revolute { pair: joint.pair }), Origin::Joint(index))
+            (Constraint::joint(joint.relation, &joint.ends), Origin::Joint(index))
         })
-        .chain(drives.map(|(index, drive)| (Constraint::Drive(drive.law), Origin::Drive(index))))
+        .chain(drives.map(driving))
         .collect()
 }

@@ -2,7 +2,7 @@
 //! quick to make: a run looks at it at every step, for their extremes.
 
 use super::Mechanism;
-use super::layout::{Layout, Origin, Role};
+use super::layout::{Layout, Origin, Role, Row};
 use crate::model::Model;
 use crate::plane::Vector;
 use crate::scalar::Scalar;
@@ -80,8 +80,8 @@ pub(super) enum ForceSource {
     Clearance(usize),
     /// The joint of a driven body.
     Driven(usize),
-    /// A multiplier and the one after it.
-    Multiplier(usize),
+    /// The constraint with this index.
+    Constraint(usize),
 }
 
 /// Where the force of each joint stands.
@@ -93,8 +93,8 @@ pub(super) fn force_sources<S: Scalar>(model: &Model<S>, layout: &Layout<S>) -> 
         if let Some(place) = layout.driven.iter().position(|driven| driven.joint == index) {
             return Some(ForceSource::Driven(place));
         }
-        let row = layout.constraints.iter().find(|row| row.origin == Origin::Joint(index))?;
-        Some(ForceSource::Multiplier(row.first))
+        let its = |row: &Row<S>| row.origin == Origin::Joint(index);
+        layout.constraints.iter().position(its).map(ForceSource::Constraint)
     };
     let joints = model.joints().iter().map(|joint| joint.clearance).enumerate();
     joints.filter_map(source).collect()
@@ -155,8 +155,11 @@ impl<S: Scalar> Mechanism<S> {
                     let force = now.driving[place].0;
                     [force.x.to_f64(), force.y.to_f64()]
                 }
-                ForceSource::Multiplier(first) => {
-                    [now.lambda[first].to_f64(), now.lambda[first + 1].to_f64()]
+                ForceSource::Constraint(index) => {
+                    let (row, arms) = (&self.layout.constraints[index], &now.arms[index]);
+                    let (slopes, lambda) = (&now.jacobian[row.range()], &now.lambda[row.range()]);
+                    let force = row.constraint.on_second(arms, slopes, lambda).force;
+                    [force.x.to_f64(), force.y.to_f64()]
                 }
             };
             *value = (x * x + y * y).sqrt();

@@ -4,6 +4,7 @@
 mod balance;
 mod dae;
 mod layout;
+mod ledger;
 mod measure;
 mod modes;
 mod observation;
@@ -13,6 +14,7 @@ mod project;
 mod start;
 mod system;
 
+pub use ledger::Ledger;
 pub use measure::{Measure, Measures};
 pub use observation::*;
 pub use project::OpenJoint;
@@ -20,7 +22,7 @@ pub use system::{ContactRates, SingularPosition};
 
 use crate::clearance::{Clearance, ContactForce, EventSlot, Gap, GapRates, Mode};
 use crate::dae::{Snapshot, Watch};
-use crate::joint::Block;
+use crate::joint::{Arms, Blocks, MOST_BODIES, Relation};
 use crate::model::{Complaint, Model};
 use crate::plane::{Motion, Pose, Vector, Wrench};
 use crate::scalar::Scalar;
@@ -32,6 +34,7 @@ use measure::ForceSource;
 pub struct Mechanism<S> {
     model: Model<S>,
     layout: Layout<S>,
+    ledger: Ledger,
     /// One over mass and inertia, by place in v.
     inverse_masses: Vec<S>,
     modes: Vec<Mode<S>>,
@@ -80,9 +83,9 @@ struct Evaluation<S> {
     lambda: Vec<S>,
     powers: Vec<S>,
     /// Arms of each constraint's points.
-    arms: Vec<[Vector<S>; 2]>,
-    /// Φ_q by row: its blocks for both bodies of the constraint.
-    jacobian: Vec<[Block<S>; 2]>,
+    arms: Vec<Arms<S>>,
+    /// Φ_q by row: its blocks for the bodies of the constraint.
+    jacobian: Vec<Blocks<S>>,
     /// Φ_q M⁻¹ Φ_qᵀ, later its factors.
     matrix: Vec<S>,
     /// Force and torque of each driven body's joint and drive on that body.
@@ -103,9 +106,9 @@ impl<S: Scalar> Evaluation<S> {
             touches: vec![None; clearances],
             v_dot: vec![S::zero(); layout.coordinates],
             lambda: vec![S::zero(); layout.rows],
-            powers: vec![S::zero(); 1 + clearances],
+            powers: vec![S::zero(); Ledger::of(model).len()],
             arms: vec![[Vector::zero(); 2]; layout.constraints.len()],
-            jacobian: vec![[[S::zero(); 3]; 2]; layout.rows],
+            jacobian: vec![[[S::zero(); 3]; MOST_BODIES]; layout.rows],
             matrix: vec![S::zero(); layout.rows * layout.rows],
             driving: vec![(Vector::zero(), S::zero()); layout.driven.len()],
         }
@@ -145,7 +148,8 @@ impl<S: Scalar> Mechanism<S> {
             depth_slots: depth_slots.collect(),
             radial_roots: model.clearances().iter().map(radial_root).collect(),
             now: Evaluation::new(&model, &layout),
-            start: Snapshot::new(layout.coordinates, 1 + model.clearances().len()),
+            start: Snapshot::new(layout.coordinates, Ledger::of(&model).len()),
+            ledger: Ledger::of(&model),
             start_energy: S::zero(),
             start_accuracy: 0.0,
             modes: vec![Mode::Flight; model.clearances().len()],
@@ -175,6 +179,22 @@ impl<S: Scalar> Mechanism<S> {
         &self.start
     }
 
+    /// Where each integral stands.
+    pub fn ledger(&self) -> Ledger {
+        self.ledger
+    }
+
+    /// Times (s) at which a derivative of what is prescribed jumps, in their order: engines begin
+    /// anew there.
+    pub fn corners(&self) -> Vec<S> {
+        let drives = self.model.drives().iter().filter_map(|drive| drive.course.corner());
+        let loads = self.model.loads().iter().filter_map(|load| load.course()?.corner());
+        let mut corners: Vec<S> = drives.chain(loads).collect();
+        corners.sort_by(|a, b| a.partial_cmp(b).unwrap_or(std::cmp::Ordering::Equal));
+        corners.dedup();
+        corners
+    }
+
     /// Mode of each clearance.
     pub fn modes(&self) -> &[Mode<S>] {
         &self.modes
@@ -197,15 +217,21 @@ impl<S: Scalar> Mechanism<S> {
         self.length
     }
 
-    /// Time (s) of a revolution of the first drive; `None` without one that turns.
+    /// Time (s) of a revolution, or of a period, of the first drive; `None` without one that comes
+    /// round.
     pub fn revolution(&self) -> Option<f64> {
-        let rate = self.model.drives().first()?.law.rate().to_f64().abs();
-        (rate > 0.0).then(|| std::f64::consts::TAU / rate)
+        self.model.drives().first().and_then(|drive| drive.course.period())
     }
 
-    /// The largest angular rate of any body at the state last evaluated (rad/s).
+    /// The largest angular rate of any body at the state last evaluated, or of any drive later
+    /// (rad/s); a travel counts over the mechanism's length.
     pub fn fastest_turn(&self) -> f64 {
-        self.now.motions.iter().map(|m| m.angular.abs().to_f64()).fold(0.0, f64::max)
+        let bodies = self.now.motions.iter().map(|m| m.angular.abs().to_f64());
+        let drives = self.model.drives().iter().map(|drive| {
+            let turns = matches!(self.model.joints()[drive.joint].relation, Relation::Revolute(_));
+            drive.course.fastest() / if turns { 1.0 } else { self.length }
+        });
+        bodies.chain(drives).fold(0.0, f64::max)
     }
 
     /// What event function `slot` watches: the clearance and what of it.

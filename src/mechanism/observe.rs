@@ -6,7 +6,7 @@ use super::{
     Observation,
 };
 use crate::clearance::Mode;
-use crate::plane::Vector;
+use crate::plane::{Vector, Wrench};
 use crate::scalar::Scalar;
 
 impl<S: Scalar> Mechanism<S> {
@@ -83,33 +83,43 @@ impl<S: Scalar> Mechanism<S> {
             });
         }
         let driven = self.layout.driven.iter().position(|driven| driven.joint == index);
-        let force = match driven {
-            Some(place) if self.layout.driven[place].second => self.now.driving[place].0,
-            Some(place) => -self.now.driving[place].0,
+        let wrench = match driven {
+            Some(place) => {
+                let force = self.now.driving[place].0;
+                let force = if self.layout.driven[place].second { force } else { -force };
+                Wrench { force, moment: S::zero() }
+            }
             None => {
-                let is_its = |row: &&super::layout::Row<S>| row.origin == Origin::Joint(index);
-                let first = self.layout.constraints.iter().find(is_its).map(|row| row.first);
-                first.map_or(Vector::zero(), |first| {
-                    -Vector::new(self.now.lambda[first], self.now.lambda[first + 1])
+                let at = self.layout.constraints.iter();
+                let at = at.zip(&self.now.arms).find(|(row, _)| row.origin == Origin::Joint(index));
+                at.map_or(Wrench::none(), |(row, arms)| {
+                    let (slopes, lambda) = (&self.now.jacobian, &self.now.lambda);
+                    row.constraint.on_second(arms, &slopes[row.range()], &lambda[row.range()])
                 })
             }
         };
-        JointObservation { force: doubles(force), moment: 0.0 }
+        JointObservation { force: doubles(wrench.force), moment: wrench.moment.to_f64() }
     }
 
     fn observe_energy(&self, integrals: &[S]) -> EnergyObservation {
-        let drive_work = integrals[0];
-        let dissipated = integrals[1..].iter().fold(S::zero(), |sum, d| sum + *d);
+        let drive_work = integrals[self.ledger.drives()];
+        let in_clearances = &integrals[self.ledger.clearances()];
+        let dissipated = in_clearances.iter().fold(S::zero(), |sum, d| sum + *d);
+        let (load_work, dissipated) = match self.ledger.loads() {
+            Some([work, by_loads]) => (integrals[work], dissipated + integrals[by_loads]),
+            None => (S::zero(), dissipated),
+        };
         let (kinetic, potential, elastic) =
             (self.kinetic_energy(), self.potential_energy(), self.elastic_energy());
-        let residual = kinetic + potential + elastic + dissipated - drive_work - self.start_energy;
+        let put_in = drive_work + load_work;
+        let residual = kinetic + potential + elastic + dissipated - put_in - self.start_energy;
         EnergyObservation {
             kinetic: kinetic.to_f64(),
             potential: potential.to_f64(),
             elastic: elastic.to_f64(),
             dissipated: dissipated.to_f64(),
             drive_work: drive_work.to_f64(),
-            load_work: 0.0,
+            load_work: load_work.to_f64(),
             residual: residual.to_f64(),
         }
     }

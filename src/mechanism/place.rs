@@ -20,7 +20,7 @@ impl<S: Scalar> Mechanism<S> {
             let (q, v) = (&state.q[at..at + 3], &state.v[at..at + 3]);
             let position = Vector::new(q[0], q[1]);
             self.now.poses[body] = match turns {
-                Some(turns) => turned(position, q[2], turns[body - 1]),
+                Some(turns) => with_turn(position, q[2], turns[body - 1]),
                 None => Pose::new(position, q[2]),
             };
             self.now.motions[body] = Motion { linear: Vector::new(v[0], v[1]), angular: v[2] };
@@ -31,18 +31,20 @@ impl<S: Scalar> Mechanism<S> {
     #[inline(always)]
     fn place_driven(&mut self, time: S, turns: Option<&[Turn<S>]>) {
         for driven in &self.layout.driven {
-            let (pair, law) = self.driving(driven.drive);
+            let pair = &self.model.joints()[driven.joint].ends.pair;
+            let course = &self.model.drives()[driven.drive].course;
             let (s_base, s_own, sign) = match driven.second {
                 true => (pair.s_i, pair.s_j, S::one()),
                 false => (pair.s_j, pair.s_i, -S::one()),
             };
             let (base, motion) = (self.now.poses[driven.base], self.now.motions[driven.base]);
             let acceleration = self.now.accelerations[driven.base];
-            let angle = base.angle + sign * law.angle(time);
+            let [turned, turning, bend] = course.at(time);
+            let angle = base.angle + sign * turned;
             let turn = match turns {
                 Some(turns) => turns[driven.body - 1],
                 None => {
-                    let (sin, cos) = law.wrapped_angle(time).sin_cos();
+                    let (sin, cos) = course.wrapped(time).sin_cos();
                     let sin = sign * sin;
                     Turn {
                         cos: base.cos * cos - base.sin * sin,
@@ -50,18 +52,22 @@ impl<S: Scalar> Mechanism<S> {
                     }
                 }
             };
-            let rate = motion.angular + sign * law.rate();
-            let mut pose = turned(Vector::zero(), angle, turn);
+            let rate = motion.angular + sign * turning;
+            let mut pose = with_turn(Vector::zero(), angle, turn);
             let (arm_base, arm) = (base.rotate(s_base), pose.rotate(s_own));
             pose.position = base.position + arm_base - arm;
             self.now.poses[driven.body] = pose;
             self.now.motions[driven.body] =
                 Motion { linear: motion.at(arm_base) - arm.turned() * rate, angular: rate };
-            // drives of constant speed: no angular acceleration anywhere along the chain
-            self.now.accelerations[driven.body] = Motion {
-                linear: acceleration.linear - arm_base * (motion.angular * motion.angular)
-                    + arm * (rate * rate),
-                angular: S::zero(),
+            let linear = acceleration.linear - arm_base * (motion.angular * motion.angular)
+                + arm * (rate * rate);
+            self.now.accelerations[driven.body] = match driven.accelerates {
+                false => Motion { linear, angular: S::zero() },
+                true => {
+                    let angular = acceleration.angular + sign * bend;
+                    let turning = arm_base.turned() * acceleration.angular;
+                    Motion { linear: linear + turning - arm.turned() * angular, angular }
+                }
             };
         }
     }
@@ -75,38 +81,27 @@ impl<S: Scalar> Mechanism<S> {
             }
         }
         for driven in &self.layout.driven {
-            let law = self.driving(driven.drive).1;
             let base = if driven.base == 0 { S::zero() } else { angles[driven.base - 1] };
-            let turned = law.wrapped_angle(time);
+            let turned = self.model.drives()[driven.drive].course.wrapped(time);
             angles[driven.body - 1] = if driven.second { base + turned } else { base - turned };
         }
     }
 
     /// Angular rates of every body but the ground (rad/s).
-    pub(super) fn angular_rates(&self, v: &[S], rates: &mut [S]) {
+    pub(super) fn angular_rates(&self, time: S, v: &[S], rates: &mut [S]) {
         for (body, role) in self.layout.roles.iter().enumerate() {
             if let Role::Free(at) = *role {
                 rates[body - 1] = v[at + 2];
             }
         }
         for driven in &self.layout.driven {
-            let rate = self.driving(driven.drive).1.rate();
+            let rate = self.model.drives()[driven.drive].course.rate(time);
             let base = if driven.base == 0 { S::zero() } else { rates[driven.base - 1] };
             rates[driven.body - 1] = if driven.second { base + rate } else { base - rate };
         }
     }
-
-    /// Points and law of a drive.
-    #[inline(always)]
-    pub(super) fn driving(
-        &self,
-        drive: usize,
-    ) -> (crate::joint::Pair<S>, crate::joint::SpeedDrive<S>) {
-        let drive = &self.model.drives()[drive];
-        (self.model.joints()[drive.joint].pair, drive.law)
-    }
 }
 
-fn turned<S: Scalar>(position: Vector<S>, angle: S, turn: Turn<S>) -> Pose<S> {
+fn with_turn<S: Scalar>(position: Vector<S>, angle: S, turn: Turn<S>) -> Pose<S> {
     Pose { position, angle, cos: turn.cos, sin: turn.sin }
 }

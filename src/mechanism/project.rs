@@ -156,13 +156,12 @@ impl<S: Scalar> Mechanism<S> {
         self.reach();
         let n = self.layout.coordinates;
         let mut slopes = vec![S::zero(); n * n];
-        for (row, arms) in self.layout.constraints.iter().zip(&self.now.arms) {
-            for r in 0..row.constraint.rows() {
-                let sides = row.constraint.jacobian(r, arms);
+        for row in &self.layout.constraints {
+            for (r, sides) in self.now.jacobian[row.range()].iter().enumerate() {
                 for (body, side) in row.constraint.bodies().into_iter().zip(sides) {
                     let Role::Free(at) = self.layout.roles[body] else { continue };
                     let from = (row.first + r) * n + at;
-                    slopes[from..from + 3].copy_from_slice(&side);
+                    slopes[from..from + 3].copy_from_slice(side);
                 }
             }
         }
@@ -173,7 +172,7 @@ impl<S: Scalar> Mechanism<S> {
     pub(super) fn position_errors(&mut self) -> S {
         let now = &mut self.now;
         for row in &self.layout.constraints {
-            let error = &mut now.lambda[row.first..row.first + row.constraint.rows()];
+            let error = &mut now.lambda[row.range()];
             row.constraint.position_error(now.time, &now.poses, error);
         }
         now.lambda.iter().fold(S::zero(), |largest, error| largest.max(error.abs()))
@@ -183,8 +182,8 @@ impl<S: Scalar> Mechanism<S> {
     fn velocity_errors(&mut self) {
         let now = &mut self.now;
         for row in &self.layout.constraints {
-            let error = &mut now.lambda[row.first..row.first + row.constraint.rows()];
-            row.constraint.velocity_error(&now.poses, &now.motions, error);
+            let error = &mut now.lambda[row.range()];
+            row.constraint.velocity_error(now.time, &now.poses, &now.motions, error);
         }
     }
 
@@ -192,15 +191,13 @@ impl<S: Scalar> Mechanism<S> {
     fn correct(&mut self, x: &mut [S]) -> Result<(), Fault> {
         self.factor().map_err(|singular| self.singular(singular))?;
         linear::solve_symmetric(&self.now.matrix, self.layout.rows, &mut self.now.lambda);
-        for (row, arms) in self.layout.constraints.iter().zip(&self.now.arms) {
-            let lambda = &self.now.lambda[row.first..row.first + row.constraint.rows()];
-            let on = row.constraint.wrenches(arms, lambda);
-            for (body, wrench) in row.constraint.bodies().into_iter().zip(on) {
-                let Role::Free(at) = self.layout.roles[body] else { continue };
-                let change = [wrench.force.x, wrench.force.y, wrench.moment];
-                for (c, change) in change.into_iter().enumerate() {
-                    x[at + c] += change * self.inverse_masses[at + c];
-                }
+        self.now.wrenches.fill(Wrench::none());
+        self.apply_multipliers();
+        for (body, role) in self.layout.roles.iter().enumerate() {
+            let Role::Free(at) = *role else { continue };
+            let Wrench { force, moment } = self.now.wrenches[body];
+            for (c, change) in [force.x, force.y, moment].into_iter().enumerate() {
+                x[at + c] += change * self.inverse_masses[at + c];
             }
         }
         Ok(())

@@ -23,9 +23,10 @@ use super::Mechanism;
 use super::layout::{Origin, Role, Row, key};
 use crate::clearance::Mode;
 use crate::dae::{Fault, State, System};
-use crate::joint::{Constraint, Revolute};
+use crate::joint::{Blocks, Constraint, MOST_BODIES, MOST_ROWS, Revolute};
 use crate::linear::{self, Cascade};
 use crate::model::{Complaint, KeyPath, Start};
+use crate::plane::Vector;
 use crate::scalar::Scalar;
 
 /// Speeds and rates less than this share of others, or than this many rad/s, are none.
@@ -370,16 +371,16 @@ impl<S: Scalar> Mechanism<S> {
         let written = |rows: &[Row<S>]| {
             let mut out = Vec::new();
             for row in rows {
-                let mut errors = [S::zero(); 2];
+                let mut errors = [S::zero(); MOST_ROWS];
                 error(row, &mut errors);
-                let size = match row.constraint {
-                    Constraint::Revolute(_) => S::one(),
-                    Constraint::Drive(_) => S::from_f64(self.length),
-                };
-                for (r, error) in errors.iter().enumerate().take(row.constraint.rows()) {
-                    let coefficients = self.coefficients(&row.constraint, r);
+                let all = self.coefficients(&row.constraint);
+                for (r, (coefficients, error)) in all.iter().zip(errors).enumerate() {
+                    let size = match row.constraint.is_angle(r) {
+                        true => S::from_f64(self.length),
+                        false => S::one(),
+                    };
                     let scaled = coefficients.iter().zip(&scales).map(|(c, s)| *c * *s * size);
-                    out.push((scaled.collect(), *error * size));
+                    out.push((scaled.collect(), error * size));
                 }
             }
             out
@@ -396,8 +397,7 @@ impl<S: Scalar> Mechanism<S> {
         }
     }
 
-    /// Second derivatives of ½|C|² under the exact conditions, as placed: only those by an angle
-    /// twice are not zero.
+    /// Second derivatives of ½|C|² under the exact conditions, as placed: a matrix, row by row.
     fn bend(&self, conditions: &Conditions<S>) -> Vec<S> {
         let n = self.layout.coordinates;
         let slope = |k: usize| {
@@ -411,18 +411,20 @@ impl<S: Scalar> Mechanism<S> {
         let mut multipliers = Cascade::new(exact().count());
         multipliers.minimise(&across, None, blind::<S>(n));
         let scales = self.column_scales();
-        let mut bend = vec![S::zero(); n];
+        let mut bend = vec![S::zero(); n * n];
         let mut add = |constraint: &Constraint<S>, lambda: &[S]| {
-            let by_angle = constraint.d_wrenches(&self.now.poses, lambda);
-            for (body, by_angle) in constraint.bodies().into_iter().zip(by_angle) {
-                if let Role::Free(at) = self.layout.roles[body] {
-                    bend[at + 2] += by_angle * scales[at + 2] * scales[at + 2];
-                }
-            }
+            let bodies = constraint.bodies();
+            let place = |(side, c): (usize, usize)| match self.layout.roles[bodies[side]] {
+                Role::Free(at) => Some(at + c),
+                Role::Ground | Role::Driven => None,
+            };
+            constraint.bend(&self.now.poses, lambda, |of, by, entry| {
+                let (Some(of), Some(by)) = (place(of), place(by)) else { return };
+                bend[of * n + by] += entry * scales[of] * scales[by];
+            });
         };
         for row in &self.layout.constraints {
-            let rows = row.first..row.first + row.constraint.rows();
-            add(&row.constraint, &multipliers.x()[rows]);
+            add(&row.constraint, &multipliers.x()[row.range()]);
         }
         for (row, errors) in self.centring().iter().zip(conditions.wished.chunks(2)) {
             let errors: Vec<S> = errors.iter().map(|(_, error)| *error).collect();
@@ -431,18 +433,22 @@ impl<S: Scalar> Mechanism<S> {
         bend
     }
 
-    /// One row of Φ_q over all coordinates.
-    fn coefficients(&self, constraint: &Constraint<S>, row: usize) -> Vec<S> {
-        let mut coefficients = vec![S::zero(); self.layout.coordinates];
-        let blocks = constraint.jacobian(row, &constraint.arms(&self.now.poses));
-        for (body, block) in constraint.bodies().into_iter().zip(blocks) {
-            if let Role::Free(at) = self.layout.roles[body] {
-                for (c, entry) in block.into_iter().enumerate() {
-                    coefficients[at + c] += entry;
+    /// Φ_q of a constraint over all coordinates, row by row.
+    fn coefficients(&self, constraint: &Constraint<S>) -> Vec<Vec<S>> {
+        let mut arms = [Vector::zero(); 2];
+        let mut rows = vec![[[S::zero(); 3]; MOST_BODIES]; constraint.rows()];
+        constraint.reach(&self.now.poses, &mut arms, &mut rows);
+        let written = |blocks: &Blocks<S>| {
+            let mut coefficients = vec![S::zero(); self.layout.coordinates];
+            for (body, block) in constraint.bodies().into_iter().zip(blocks) {
+                let Role::Free(at) = self.layout.roles[body] else { continue };
+                for (c, entry) in block.iter().enumerate() {
+                    coefficients[at + c] += *entry;
                 }
             }
-        }
-        coefficients
+            coefficients
+        };
+        rows.iter().map(written).collect()
     }
 
     /// Complains of every joint that does not close and every key that does not hold.
@@ -452,9 +458,10 @@ impl<S: Scalar> Mechanism<S> {
         let allowed = 1e-9 * self.length;
         let mut complaints = Vec::new();
         for row in &self.layout.constraints {
-            let mut error = [S::zero(); 2];
+            let mut error = [S::zero(); MOST_ROWS];
             row.constraint.position_error(S::zero(), &self.now.poses, &mut error);
-            let off = error[0].to_f64().hypot(error[1].to_f64());
+            let off = error.map(|error| error.to_f64());
+            let off = off[0].hypot(off[1]).hypot(off[2]);
             if !(off <= allowed) {
                 complaints.push(Complaint {
                     key: key(&self.model, row.origin),
@@ -569,7 +576,8 @@ impl<S: Scalar> Mechanism<S> {
         let weights = self.weights(|start| start.velocities);
         let from_fixed = |fixed: &Fixed<S>| v[fixed.at] - fixed.value;
         self.conditions(&weights, &away, fixed, from_fixed, |row, error| {
-            row.constraint.velocity_error(&self.now.poses, &self.now.motions, error);
+            let (poses, motions) = (&self.now.poses, &self.now.motions);
+            row.constraint.velocity_error(self.now.time, poses, motions, error);
         })
     }
 
@@ -672,8 +680,7 @@ fn start_fault(fault: Fault) -> Vec<Complaint> {
 /// the ground from each other.
 fn characteristic_length<S: Scalar>(mechanism: &Mechanism<S>) -> f64 {
     let joints = mechanism.model().joints().iter();
-    let arms =
-        joints.flat_map(|joint| [(joint.pair.i, joint.pair.s_i), (joint.pair.j, joint.pair.s_j)]);
+    let arms = joints.map(|joint| joint.ends.pair).flat_map(|p| [(p.i, p.s_i), (p.j, p.s_j)]);
     let longest = arms
         .filter(|(body, _)| *body != crate::model::GROUND)
         .map(|(_, arm)| arm.norm().to_f64())

@@ -152,8 +152,8 @@ impl<S: Scalar> System<S> for Mechanism<S> {
         self.angles(time, q, angles);
     }
 
-    fn turn_rates(&self, _time: S, v: &[S], rates: &mut [S]) {
-        self.angular_rates(v, rates);
+    fn turn_rates(&self, time: S, v: &[S], rates: &mut [S]) {
+        self.angular_rates(time, v, rates);
     }
 
     fn offsets(&self) -> usize {

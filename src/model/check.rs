@@ -4,10 +4,11 @@
 use super::normal_law;
 use super::{
     BodyDescription, ClearanceDescription, Complaint, Complaints, Description, DriveDescription,
-    DriveKind, FrictionDescription, JointDescription, JointKind, KeyPath, LoadDescription,
-    LoadKind, NamedPoint, NormalDescription, NormalLawName, OfMaterials, StartDescription,
-    StiffnessDescription, shortened,
+    FrictionDescription, JointDescription, KeyPath, LoadDescription, NamedPoint, NormalDescription,
+    NormalLawName, OfMaterials, StartDescription, StiffnessDescription, shortened,
 };
+use crate::joint::{PRISMATIC, REVOLUTE};
+use crate::parameter::{Key, Takes, Value, Values};
 use crate::scalar::Decimal;
 use std::collections::HashSet;
 
@@ -37,7 +38,7 @@ pub fn check(description: &Description) -> Vec<Complaint> {
         description.loads.iter().map(|load| &load.name),
     );
     for load in &description.loads {
-        check_load(&mut complaints, load);
+        check_load(&mut complaints, description, load);
     }
     check_starts(&mut complaints, description);
     complaints.into_vec()
@@ -105,12 +106,86 @@ fn check_bodies(complaints: &mut Complaints, bodies: &[BodyDescription]) {
 
 fn check_joint(complaints: &mut Complaints, description: &Description, joint: &JointDescription) {
     let key = KeyPath::new(["joints", &joint.name]);
-    check_between(complaints, description, key.key("between"), &joint.between);
-    match &joint.kind {
-        JointKind::Revolute { clearance: Some(clearance) } => {
-            check_clearance(complaints, &key.key("clearance"), clearance);
+    check_part(complaints, description, &key, &joint.part);
+    if let Some(clearance) = &joint.clearance {
+        check_clearance(complaints, &key.key("clearance"), clearance);
+    }
+}
+
+/// The values of a part are in the ranges of their keys, and what they name is there.
+fn check_part(
+    complaints: &mut Complaints,
+    description: &Description,
+    path: &KeyPath,
+    part: &Values,
+) {
+    for Key { name, takes, unit, .. } in part.kind().keys {
+        let (Some(value), key) = (part.get(name), path.key(*name)) else { continue };
+        match (takes, value) {
+            (Takes::Number(range), Value::Number(number)) => {
+                complaints.require(key, number, unit, range.words(), |x| range.holds(x));
+            }
+            (Takes::Vector(range), Value::Vector(vector)) => {
+                let length = vector[0].to_f64().hypot(vector[1].to_f64());
+                if length.is_finite() && !range.holds(length) {
+                    let words = range.words();
+                    complaints.add(key, format!("must be {words} in length, is {length}"));
+                } else {
+                    check_vector(complaints, key, vector, unit);
+                }
+            }
+            (Takes::Points, Value::Pair(between)) => {
+                check_between(complaints, description, key, between);
+            }
+            (Takes::Point, Value::Text(point)) => {
+                if let Err(reason) = find_point(complaints, description, point) {
+                    complaints.add(key, reason);
+                }
+            }
+            (Takes::Body, Value::Text(body)) => check_body(complaints, description, key, body),
+            (Takes::Bodies, Value::Pair(bodies)) => {
+                for body in bodies {
+                    check_body(complaints, description, key.clone(), body);
+                }
+                if bodies[0] == bodies[1] {
+                    complaints.add(key, format!("names {:?} twice", shortened(&bodies[0])));
+                }
+            }
+            (Takes::Course, Value::Course(course)) => {
+                check_part(complaints, description, &key, course);
+                if course.is("speed") || course.is("ramp") {
+                    check_goes(complaints, &key, course, "velocity", "speed_rpm");
+                }
+            }
+            _ => {}
         }
-        JointKind::Revolute { clearance: None } => {}
+    }
+    if let Some((key, message)) = part.kind().also.and_then(|also| also(part)) {
+        complaints.add(path.key(key), message);
+    }
+}
+
+fn check_body(complaints: &mut Complaints, description: &Description, key: KeyPath, body: &str) {
+    let mut known = description.bodies.iter().map(|body| body.name.as_str()).chain([GROUND]);
+    if !known.clone().any(|known| known == body) {
+        let near = complaints.near(body, known.by_ref());
+        complaints.add(key, format!("there is no body {:?}{near}", shortened(body)));
+    }
+}
+
+/// A course that goes at a speed says it by the key of what goes, and not by the other.
+fn check_goes(
+    complaints: &mut Complaints,
+    key: &KeyPath,
+    course: &Values,
+    wanted: &str,
+    other: &str,
+) {
+    if course.get(wanted).is_none() {
+        complaints.add(key.key(wanted), "is missing");
+    }
+    if course.get(other).is_some() {
+        complaints.add(key.key(other), format!("does not belong here: use `{wanted}`"));
     }
 }
 
@@ -297,20 +372,39 @@ fn check_drives(complaints: &mut Complaints, description: &Description) {
             complaints
                 .add(key.key("joint"), format!("drive {other:?} drives joint {joint:?} already"));
         }
-        check_drive(complaints, &key, drive);
+        check_drive(complaints, description, drive);
     }
 }
 
-fn check_drive(complaints: &mut Complaints, key: &KeyPath, drive: &DriveDescription) {
-    let DriveKind::Speed { speed_rpm, angle } = &drive.kind;
-    complaints.require_finite(key.key("speed_rpm"), speed_rpm, "revolutions a minute");
-    complaints.require_finite(key.key("angle"), angle, "rad");
+fn check_drive(complaints: &mut Complaints, description: &Description, drive: &DriveDescription) {
+    let key = KeyPath::new(["drives", &drive.name]);
+    check_part(complaints, description, &key, &drive.part);
+    let joint = description.joints.iter().find(|joint| joint.name == drive.joint);
+    let Some(kind) = joint.map(|joint| joint.part.kind().word) else { return };
+    let pairs = match kind {
+        REVOLUTE => [("speed_rpm", "velocity"), ("angle", "position")],
+        PRISMATIC => [("velocity", "speed_rpm"), ("position", "angle")],
+        other => {
+            let message = format!(
+                "joint {:?} is {other:?}, which has nothing to drive: it must be {REVOLUTE:?} or \
+                 {PRISMATIC:?}",
+                drive.joint
+            );
+            return complaints.add(key.key("joint"), message);
+        }
+    };
+    if drive.part.kind().keys.iter().any(|key| key.name == "velocity") {
+        let [(speed, other), (start, other_start)] = pairs;
+        check_goes(complaints, &key, &drive.part, speed, other);
+        if drive.part.get(other_start).is_some() {
+            let message = format!("does not belong on joint {kind:?}: use `{start}`");
+            complaints.add(key.key(other_start), message);
+        }
+    }
 }
 
-fn check_load(complaints: &mut Complaints, load: &LoadDescription) {
-    let key = KeyPath::new(["loads", &load.name]);
-    let LoadKind::Gravity { acceleration } = &load.kind;
-    check_vector(complaints, key.key("acceleration"), acceleration, "m/s²");
+fn check_load(complaints: &mut Complaints, description: &Description, load: &LoadDescription) {
+    check_part(complaints, description, &KeyPath::new(["loads", &load.name]), &load.part);
 }
 
 fn check_starts(complaints: &mut Complaints, description: &Description) {

@@ -3,6 +3,7 @@
 //! Numbers are decimals as written; names are words. [`Model::new`](super::Model::new) checks a
 //! description and reads its numbers into an arithmetic.
 
+use crate::parameter::Values;
 use crate::scalar::Decimal;
 
 /// A mechanism, unchecked. The order of each list is the order of the case file.
@@ -45,25 +46,23 @@ pub struct BodyDescription {
     pub points: Vec<NamedPoint>,
 }
 
-/// A joint between two points, written `body.point`.
+/// A joint.
 #[derive(Debug, Clone, PartialEq)]
 pub struct JointDescription {
     /// Name.
     pub name: String,
-    /// What kind of joint.
-    pub kind: JointKind,
-    /// The points it joins: bearing on the first, journal on the second.
-    pub between: [String; 2],
+    /// Its kind and keys.
+    pub part: Values,
+    /// Of a revolute joint: bearing on the first point, journal on the second. Left out: an ideal
+    /// joint.
+    pub clearance: Option<ClearanceDescription>,
 }
 
-/// Kinds of joint.
-#[derive(Debug, Clone, PartialEq)]
-pub enum JointKind {
-    /// Two points stay together, or, with a clearance, nearly so.
-    Revolute {
-        /// Left out: an ideal joint.
-        clearance: Option<ClearanceDescription>,
-    },
+impl JointDescription {
+    /// What it joins: two points, or, of a gear pair, two bodies.
+    pub fn between(&self) -> [&str; 2] {
+        self.part.pair("between")
+    }
 }
 
 /// A clearance between journal and bearing.
@@ -172,22 +171,11 @@ pub enum FrictionDescription {
 pub struct DriveDescription {
     /// Name.
     pub name: String,
-    /// What it prescribes.
-    pub kind: DriveKind,
+    /// The course of what it prescribes: the angle of a revolute joint, the travel of a prismatic
+    /// one.
+    pub part: Values,
     /// Name of the joint it sits on.
     pub joint: String,
-}
-
-/// Kinds of drive.
-#[derive(Debug, Clone, PartialEq)]
-pub enum DriveKind {
-    /// The second body of the joint turns relative to the first at a constant rate.
-    Speed {
-        /// Speed (revolutions a minute).
-        speed_rpm: Decimal,
-        /// Relative angle at t = 0 (rad).
-        angle: Decimal,
-    },
 }
 
 /// A load.
@@ -195,18 +183,15 @@ pub enum DriveKind {
 pub struct LoadDescription {
     /// Name.
     pub name: String,
-    /// What it does.
-    pub kind: LoadKind,
+    /// Its kind and keys.
+    pub part: Values,
 }
 
-/// Kinds of load.
-#[derive(Debug, Clone, PartialEq)]
-pub enum LoadKind {
-    /// A uniform field of gravity.
-    Gravity {
-        /// Acceleration of free fall (m/s²), fixed frame.
-        acceleration: [Decimal; 2],
-    },
+impl LoadDescription {
+    /// Acceleration of free fall (m/s², fixed frame) of a field of gravity.
+    pub fn gravity(&self) -> Option<[f64; 2]> {
+        self.part.is(crate::load::GRAVITY).then(|| self.part.vector("acceleration"))
+    }
 }
 
 /// Where a body starts. Keys left out are solved for.

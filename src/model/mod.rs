@@ -8,26 +8,28 @@ mod check;
 mod complaint;
 mod description;
 
+pub use crate::joint::GROUND;
 pub use check::{check, is_name};
 pub use complaint::*;
 pub use description::*;
 
 use crate::clearance::Clearance;
 use crate::contact::{NormalLaw, hertz, lankarani_nikravesh, stiffness};
+use crate::course::Course;
 use crate::friction::Ambrosio;
-use crate::joint::{Pair, SpeedDrive};
-use crate::load::{Gravity, Load};
+use crate::joint::{self, Pair, Relation};
+use crate::load::{self, Load};
+use crate::parameter::{Takes, Value, Values};
 use crate::plane::Vector;
 use crate::scalar::{Decimal, F256, Scalar};
-
-/// Index of the ground among the bodies.
-pub const GROUND: usize = 0;
 
 /// A joint of a model.
 #[derive(Debug, Clone)]
 pub struct Joint<S> {
-    /// Its points.
-    pub pair: Pair<S>,
+    /// What it holds.
+    pub relation: Relation<S>,
+    /// Where it sits.
+    pub ends: joint::Ends<S>,
     /// Index of its clearance; `None` for an ideal joint.
     pub clearance: Option<usize>,
 }
@@ -37,8 +39,8 @@ pub struct Joint<S> {
 pub struct Drive<S> {
     /// Index of the joint it sits on.
     pub joint: usize,
-    /// What it prescribes.
-    pub law: SpeedDrive<S>,
+    /// What it prescribes: the angle (rad) of a revolute joint, the travel (m) of a prismatic one.
+    pub course: Course<S>,
 }
 
 /// Where a body starts: the keys a case names.
@@ -98,31 +100,30 @@ impl<S: Scalar> Model<S> {
         let mut joints = Vec::new();
         let mut clearances = Vec::new();
         for joint in &description.joints {
-            let pair = pair(description, &frame, joint);
-            let JointKind::Revolute { clearance } = &joint.kind;
-            let clearance = clearance.as_ref().map(|clearance| {
-                clearances.push(read_clearance(pair, clearance));
+            let sites = Sites::of(description, &frame, &joint.part);
+            let ends = joint::Ends { pair: sites.pair, third: sites.third };
+            let clearance = joint.clearance.as_ref().map(|clearance| {
+                clearances.push(read_clearance(ends.pair, clearance));
                 clearances.len() - 1
             });
-            joints.push(Joint { pair, clearance });
+            let relation = known("joints", &joint.name, Relation::new(&joint.part, &ends))?;
+            joints.push(Joint { relation, ends, clearance });
         }
         let drives = description.drives.iter().map(|drive| {
             let joint = position(&names.joints, &drive.joint);
-            let Pair { i, j, .. } = joints[joint].pair;
-            let DriveKind::Speed { speed_rpm, angle } = &drive.kind;
-            Drive { joint, law: SpeedDrive::new(i, j, speed_rpm, angle) }
+            let course = known("drives", &drive.name, Course::of(&drive.part))?;
+            Ok::<_, Vec<Complaint>>(Drive { joint, course })
         });
-        let loads = description.loads.iter().map(|load| match &load.kind {
-            LoadKind::Gravity { acceleration } => Load::Gravity(Gravity {
-                acceleration: vector(acceleration),
-                datum: -frame.origin(),
-            }),
+        let loads = description.loads.iter().map(|load| {
+            let sites = Sites::of(description, &frame, &load.part);
+            let ends = load::Ends { pair: sites.pair, datum: -frame.origin() };
+            known("loads", &load.name, Load::new(&load.part, &ends))
         });
         Ok(Model {
             masses: with_ground(|body| &body.mass),
             inertias: with_ground(|body| &body.inertia),
-            drives: drives.collect(),
-            loads: loads.collect(),
+            drives: drives.collect::<Result<_, _>>()?,
+            loads: loads.collect::<Result<_, _>>()?,
             starts: bodies().map(|body| start(description, &frame, &body.name)).collect(),
             joints,
             clearances,
@@ -185,9 +186,7 @@ impl<S: Scalar> Model<S> {
 }
 
 fn names(description: &Description) -> Names {
-    let has_clearance = |joint: &&JointDescription| {
-        matches!(joint.kind, JointKind::Revolute { clearance: Some(_) })
-    };
+    let has_clearance = |joint: &&JointDescription| joint.clearance.is_some();
     let joints = || description.joints.iter();
     Names {
         bodies: description.bodies.iter().map(|body| body.name.clone()).collect(),
@@ -204,7 +203,7 @@ struct Frame<'a> {
 
 impl<'a> Frame<'a> {
     fn of(description: &'a Description) -> Frame<'a> {
-        let mut ends = description.joints.iter().flat_map(|joint| &joint.between);
+        let mut ends = description.joints.iter().flat_map(|joint| joint.between());
         let origin = ends.find_map(|end| {
             let name = end.strip_prefix("ground.")?;
             let point = description.ground.iter().find(|point| point.name == name)?;
@@ -260,14 +259,57 @@ fn point<S: Scalar>(
     (index, at.map_or(Vector::zero(), place))
 }
 
-fn pair<S: Scalar>(
-    description: &Description,
-    frame: &Frame<'_>,
-    joint: &JointDescription,
-) -> Pair<S> {
-    let (i, s_i) = point(description, frame, &joint.between[0]);
-    let (j, s_j) = point(description, frame, &joint.between[1]);
-    Pair { i, j, s_i, s_j }
+/// A part of a kind that its list knows, as every part is that was read from a case.
+fn known<T>(list: &str, name: &str, part: Option<T>) -> Result<T, Vec<Complaint>> {
+    let message = || "is of a kind that does not belong here".to_owned();
+    part.ok_or_else(|| vec![Complaint { key: KeyPath::new([list, name]), message: message() }])
+}
+
+/// Where a part sits.
+struct Sites<S> {
+    /// Its two points or two bodies; of a part at one point or on one body that is the second, and
+    /// the first takes the reaction.
+    pair: Pair<S>,
+    /// Index of a third body, else the ground.
+    third: usize,
+}
+
+impl<S: Scalar> Sites<S> {
+    fn of(description: &Description, frame: &Frame<'_>, part: &Values) -> Self {
+        let body = |name: &str| match name {
+            "ground" => GROUND,
+            name => 1 + description.bodies.iter().position(|b| b.name == name).unwrap_or(0),
+        };
+        let nowhere = Vector::zero();
+        let mut pair = Pair { i: GROUND, j: GROUND, s_i: nowhere, s_j: nowhere };
+        let mut single = Vec::new();
+        for key in part.kind().keys {
+            match (key.takes, part.get(key.name)) {
+                (Takes::Points, Some(Value::Pair([first, second]))) => {
+                    (pair.i, pair.s_i) = point(description, frame, first);
+                    (pair.j, pair.s_j) = point(description, frame, second);
+                }
+                (Takes::Bodies, Some(Value::Pair([first, second]))) => {
+                    (pair.i, pair.j) = (body(first), body(second));
+                }
+                (Takes::Point, Some(Value::Text(name))) => {
+                    (pair.j, pair.s_j) = point(description, frame, name);
+                }
+                (Takes::Body, Some(Value::Text(name))) => single.push(body(name)),
+                _ => {}
+            }
+        }
+        let third = match *single {
+            // on a body, against another
+            [on, against] => {
+                (pair.i, pair.j) = (against, on);
+                GROUND
+            }
+            [third] => third,
+            _ => GROUND,
+        };
+        Sites { pair, third }
+    }
 }
 
 fn read_clearance<S: Scalar>(pair: Pair<S>, clearance: &ClearanceDescription) -> Clearance<S> {

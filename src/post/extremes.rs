@@ -129,7 +129,7 @@ const MOST_STRIDES: f64 = 1e7;
 /// Where a walk to `end` (s) has seen all: what one drive does in a revolution it does in all.
 fn once_round(assembled: &Assembled<f64>, end: f64) -> f64 {
     match assembled.mechanism().model().drives() {
-        [drive] => end.min(std::f64::consts::TAU / drive.law.rate().abs()),
+        [drive] => end.min(drive.course.all().unwrap_or(end)),
         _ => end,
     }
 }

@@ -178,12 +178,11 @@ fn samples_in(contact: &Contact, times: &[f64]) -> usize {
 fn turning(case: &Case, end: f64, samples: usize) -> Option<Turning> {
     let model = Model::<f64>::new(&case.description).ok()?;
     let (drive, name) = model.drives().first().zip(model.names().drives.first())?;
-    Some(Turning {
-        drive: name.clone(),
-        start: drive.law.angle(0.0),
-        rate: drive.law.rate(),
-        revolutions: Revolutions::new(drive.law.rate(), end, samples)?,
-    })
+    let [start, rate, _] = drive.course.at(0.0);
+    let round = std::f64::consts::TAU / drive.course.period()?;
+    let rate = if drive.course.accelerates() { round } else { rate };
+    let revolutions = Revolutions::new(rate, end, samples)?;
+    Some(Turning { drive: name.clone(), start, rate, revolutions })
 }
 
 /// The ideal mechanism of the case in a file, in doubles, which is all that a ratio needs.

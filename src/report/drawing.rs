@@ -1,7 +1,8 @@
 //! What the page needs to draw a mechanism: points on bodies, and the joints between them.
 
 use crate::case::{Case, Changes};
-use crate::model::{Description, DriveKind, JointKind, LoadKind, NamedPoint};
+use crate::course::Course;
+use crate::model::{Description, JointDescription, NamedPoint};
 use crate::record::ResultFile;
 use serde::Serialize;
 use std::path::Path;
@@ -61,9 +62,7 @@ impl Drawing {
         if !bodies.eq(file.bodies()) || !joints.eq(file.joints()) {
             return None;
         }
-        let gravity = description.loads.iter().map(|load| match &load.kind {
-            LoadKind::Gravity { acceleration } => coordinates(acceleration),
-        });
+        let gravity = description.loads.iter().filter_map(|load| load.gravity());
         Some(Drawing {
             ground: points(&description.ground),
             bodies: description.bodies.iter().map(|body| points(&body.points)).collect(),
@@ -81,9 +80,8 @@ pub(super) fn case_of(file: &ResultFile) -> Option<Case> {
 
 /// Duration of one turn of the first drive (s).
 pub(super) fn period(case: &Case) -> Option<f64> {
-    let DriveKind::Speed { speed_rpm, .. } = &case.description.drives.first()?.kind;
-    let period = 60.0 / speed_rpm.to_f64().abs();
-    period.is_finite().then_some(period)
+    let drive = case.description.drives.first()?;
+    Course::<f64>::of(&drive.part)?.period()
 }
 
 /// Whether two cases describe the same mechanism, under the same loads and drives, clearances
@@ -97,20 +95,18 @@ fn ideal(description: &Description) -> Description {
     let mut ideal = description.clone();
     ideal.start.clear();
     for joint in &mut ideal.joints {
-        let JointKind::Revolute { clearance } = &mut joint.kind;
-        *clearance = None;
+        joint.clearance = None;
     }
     ideal
 }
 
 fn joints_of(description: &Description) -> Option<Vec<DrawnJoint>> {
-    let joint = |joint: &crate::model::JointDescription| {
-        let JointKind::Revolute { clearance } = &joint.kind;
-        let [first, second] = &joint.between;
+    let joint = |joint: &JointDescription| {
+        let [first, second] = joint.between();
         Some(DrawnJoint {
             between: [point_on_body(description, first)?, point_on_body(description, second)?],
             driven: description.drives.iter().any(|drive| drive.joint == joint.name),
-            clearance: clearance.as_ref().map(|clearance| DrawnClearance {
+            clearance: joint.clearance.as_ref().map(|clearance| DrawnClearance {
                 bearing_radius: clearance.bearing_radius.to_f64(),
                 radial: clearance.radial.to_f64(),
             }),
@@ -119,15 +115,18 @@ fn joints_of(description: &Description) -> Option<Vec<DrawnJoint>> {
     description.joints.iter().map(joint).collect()
 }
 
-/// A point written `body.point`.
+/// A point written `body.point`; of a body alone its first.
 fn point_on_body(description: &Description, written: &str) -> Option<PointOnBody> {
-    let (name, point) = written.split_once('.')?;
+    let (name, point) = written.split_once('.').unwrap_or((written, ""));
     let body = description.bodies.iter().position(|body| body.name == name);
     let points = match body {
         Some(body) => &description.bodies[body].points,
         None => &description.ground,
     };
-    let point = points.iter().position(|known| known.name == point)?;
+    let point = match point {
+        "" => (!points.is_empty()).then_some(0)?,
+        point => points.iter().position(|known| known.name == point)?,
+    };
     Some(PointOnBody { body, point })
 }
 

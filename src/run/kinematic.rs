@@ -57,6 +57,7 @@ fn go<S: Scalar, R: Recorder>(
     let mut now = mechanism.start().clone();
     let fastest = mechanism.fastest_turn().max(1e-300);
     let rule = gauss();
+    let corners = mechanism.corners();
     let mut progress = Progress::default();
     let mut tracker = (recorder.keeps_revolutions())
         .then(|| Tracker::new(mechanism.measures(), mechanism.revolution()));
@@ -69,6 +70,12 @@ fn go<S: Scalar, R: Recorder>(
             let to = now.time + (time - now.time) * S::from_f64(1.0 / left);
             let to = if left > 1.0 { to } else { time };
             let fault = |source| Error::System { time: to.to_f64(), source };
+            for corner in corners.iter().filter(|corner| **corner < to) {
+                // the quadrature sees no jump
+                if *corner > now.time {
+                    advance(mechanism, &mut now, *corner, &rule).map_err(fault)?;
+                }
+            }
             advance(mechanism, &mut now, to, &rule).map_err(fault)?;
             if let Some(tracker) = &mut tracker {
                 follow(tracker, mechanism, &now, recorder)?;

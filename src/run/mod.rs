@@ -26,7 +26,7 @@ pub use witness::Contradiction;
 use crate::clearance::{Clearance, EventSlot, Mode};
 use crate::dae::{Advance, Direction, Engine, Fault, Snapshot, State, System};
 use crate::halt;
-use crate::mechanism::Mechanism;
+use crate::mechanism::{Ledger, Mechanism};
 use crate::scalar::Scalar;
 use extremes::Tracker;
 use inside::End;
@@ -149,6 +149,7 @@ struct Run<'a, S: Scalar, E: Engine<S>, R> {
     engine: &'a mut E,
     recorder: &'a mut R,
     schedule: &'a Schedule,
+    ledger: Ledger,
     /// Relative tolerance of the engine: what it makes of a steady force is no peak.
     tolerance: f64,
     next_sample: u64,
@@ -209,6 +210,7 @@ where
         scratch: start.clone(),
         touching: vec![None; clearances],
         allowed_depths,
+        ledger: engine.system().ledger(),
         engine,
         recorder,
         schedule,
@@ -254,9 +256,12 @@ where
         self.sample(false)?;
         self.check_depths()?;
         let end: S = self.schedule.duration();
+        let corners = self.engine.system().corners();
         while self.engine.now().time < end {
             let before = self.engine.now().time;
-            let advance = self.engine.step(end).map_err(|source| self.stopped(source))?;
+            let corner = corners.iter().copied().find(|corner| *corner > before && *corner < end);
+            let until = corner.unwrap_or(end);
+            let advance = self.engine.step(until).map_err(|source| self.stopped(source))?;
             if self.engine.now().time < before {
                 let [from, to] = [before, self.engine.now().time].map(Scalar::to_f64);
                 return Err(Error::Contradiction(Contradiction::TimeGoesBack { from, to }));
@@ -272,6 +277,7 @@ where
             self.check_depths()?;
             match advance {
                 Advance::Event => self.event()?,
+                Advance::Stepped if Some(self.engine.now().time) == corner => self.begin_anew()?,
                 Advance::Stepped if self.progress.steps.is_multiple_of(DRIFT_EVERY) => {
                     self.hold()?
                 }
@@ -397,6 +403,16 @@ where
         Ok(())
     }
 
+    /// Restarts where a derivative of what is prescribed jumps.
+    fn begin_anew(&mut self) -> Outcome<(), S, E, R> {
+        self.scratch.clone_from(self.engine.now());
+        self.project()?;
+        let state = self.scratch.clone();
+        self.restart(&state)?;
+        self.segment += 1;
+        Ok(())
+    }
+
     /// Takes every event that fired: records it, switches the mode, restarts.
     fn event(&mut self) -> Outcome<(), S, E, R> {
         self.scratch.clone_from(self.engine.now());
@@ -493,7 +509,8 @@ where
         });
         self.progress.contacts += 1;
         self.window.forget_peaks(k);
-        self.touching[k] = Some(Touching::new(number, rates, now.integrals[1 + k]));
+        self.touching[k] =
+            Some(Touching::new(number, rates, now.integrals[self.ledger.clearance(k)]));
         Ok(())
     }
 
@@ -512,7 +529,8 @@ where
     /// Takes leave of a contact at the state in `scratch`: its last maximum, its dissipation.
     fn settle(&mut self, k: usize) {
         let Some(touching) = self.touching[k].take() else { return };
-        let dissipated = self.scratch.integrals[1 + k] - touching.dissipated_before;
+        let dissipated =
+            self.scratch.integrals[self.ledger.clearance(k)] - touching.dissipated_before;
         self.counts.tensions += u64::from(touching.pulled);
         if let Some(contact) = self.contacts.get(touching.number) {
             contact.dissipated = dissipated.to_f64();

@@ -7,10 +7,12 @@
 mod decimal;
 mod double;
 mod dual;
+mod lift;
 mod octuple;
 
 pub use decimal::{Decimal, NotADecimal};
 pub use dual::{Dual, Dual64};
+pub use lift::Lift;
 pub use octuple::F256;
 
 use std::fmt::Debug;

@@ -123,17 +123,17 @@ const BAD: &[(&str, &str, &str)] = &[
     (
         "[joints.B0]\nkind    = \"revolute\"",
         "[joints.B0]\nkind = \"revolut\"",
-        "joints.B0.kind: must be \"revolute\", is \"revolut\" (did you mean \"revolute\"?)",
+        "joints.B0.kind: must be one of \"revolute\", \"prismatic\", \"pin-slot\", \"fixed\", \"distance\", \"gear\", is \"revolut\" (did you mean \"revolute\"?)",
     ),
     (
         "[joints.B0]\nkind    = \"revolute\"",
-        "[joints.B0]\nkind = \"pin-slot\"\naxis = [1, 0]",
-        "joints.B0.kind: must be \"revolute\", is \"pin-slot\"",
+        "[joints.B0]\nkind = \"ball\"\naxis = [1, 0]",
+        "joints.B0.kind: must be one of \"revolute\", \"prismatic\", \"pin-slot\", \"fixed\", \"distance\", \"gear\", is \"ball\"",
     ),
     (
         "[joints.B0]\nkind    = \"revolute\"",
         "[joints.B0]",
-        "joints.B0.kind: is missing; it must be \"revolute\"",
+        "joints.B0.kind: is missing; it must be one of \"revolute\", \"prismatic\", \"pin-slot\", \"fixed\", \"distance\", \"gear\"",
     ),
     (
         "\"coupler.B\", \"follower.B\"",
@@ -286,7 +286,7 @@ const BAD: &[(&str, &str, &str)] = &[
     (
         "[start]",
         "[loads.g]\nkind = \"wind\"\nspeed = 3\n[start]",
-        "loads.g.kind: must be \"gravity\", is \"wind\"",
+        "loads.g.kind: must be one of \"gravity\", \"force\", \"torque\", \"spring\", \"torsion-spring\", is \"wind\"",
     ),
     (
         "follower = { angle",

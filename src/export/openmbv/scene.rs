@@ -1,7 +1,7 @@
 //! The scene: what the bodies look like, as OpenMBV's XML.
 
 use super::super::Error;
-use crate::model::{Description, JointKind, NamedPoint};
+use crate::model::{Description, NamedPoint};
 use crate::record::ResultFile;
 use std::f64::consts::TAU;
 use std::fmt::Write;
@@ -232,12 +232,9 @@ fn eyes(
     let eye = |point: &NamedPoint| {
         let centre = place(point);
         let here = format!("{body}.{}", point.name);
-        let clearance = description.joints.iter().find_map(|joint| match &joint.kind {
-            JointKind::Revolute { clearance: Some(clearance) } => {
-                let side = joint.between.iter().position(|end| *end == here)?;
-                Some((side, clearance))
-            }
-            JointKind::Revolute { clearance: None } => None,
+        let clearance = description.joints.iter().find_map(|joint| {
+            let side = joint.between().iter().position(|end| *end == here)?;
+            Some((side, joint.clearance.as_ref()?))
         });
         let (name, radii) = match clearance {
             None => (format!("eye_{}", point.name), vec![1.4 * half_width]),
@@ -262,7 +259,7 @@ fn circle([x, y]: [f64; 2], radius: f64) -> Vec<[f64; 2]> {
 
 fn arrow(description: &Description, file: &ResultFile, joint: usize, name: &str) -> Option<Arrow> {
     let found = description.joints.iter().find(|joint| joint.name == name)?;
-    let (body, point) = found.between[1].split_once('.')?;
+    let (body, point) = found.between()[1].split_once('.')?;
     let index = file.bodies().iter().position(|known| known == body);
     let points = match description.bodies.iter().find(|known| known.name == body) {
         Some(body) => &body.points,

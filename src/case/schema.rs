@@ -1,0 +1,209 @@
+//! The JSON Schema of case files, and the same in tables. Joints, drives, loads and courses come from
+//! what their kinds say of themselves; the other keys stand in `schema.json`.
+
+use crate::parameter::{Key, Kind, Otherwise, Range, Takes};
+use crate::{course, joint, load};
+use serde_json::{Map, Value, json};
+
+/// The schema of what does not come in kinds.
+const REST: &str = include_str!("schema.json");
+
+/// The JSON Schema (draft 07) of case files.
+pub fn schema() -> Value {
+    let mut schema: Value = serde_json::from_str(REST).unwrap_or_default();
+    let kinds = [
+        ("joint", "A joint", one_of(joint::KINDS, |kind| joint_keys(kind))),
+        ("drive", "A drive", one_of(course::KINDS, |_| drive_keys())),
+        ("load", "A load", one_of(load::KINDS, |_| Map::new())),
+        ("course", "A course of time", one_of(course::KINDS, |_| Map::new())),
+    ];
+    for (name, about, alternatives) in kinds {
+        schema["$defs"][name] = json!({ "description": about, "oneOf": alternatives });
+    }
+    // the kind of a drive may be left out
+    let drives = schema["$defs"]["drive"]["oneOf"].as_array_mut();
+    for drive in drives.into_iter().flatten() {
+        if drive["properties"]["kind"]["const"] == "speed" {
+            drive["properties"]["kind"]["default"] = json!("speed");
+            drive["required"] = json!(["joint"]);
+        }
+    }
+    schema
+}
+
+/// Keys of a joint that are those of no kind.
+fn joint_keys(kind: &Kind) -> Map<String, Value> {
+    let mut keys = Map::new();
+    if kind.word == joint::REVOLUTE {
+        keys.insert("clearance".into(), json!({ "$ref": "#/$defs/clearance" }));
+    }
+    keys
+}
+
+fn drive_keys() -> Map<String, Value> {
+    let about = "name of its joint: the angle of a revolute joint is driven, the travel of a \
+                 prismatic one";
+    let joint = json!({ "type": "string", "description": about });
+    Map::from_iter([("joint".to_owned(), joint)])
+}
+
+/// One schema for each kind, with keys before its own.
+fn one_of(kinds: &[&Kind], before: impl Fn(&Kind) -> Map<String, Value>) -> Vec<Value> {
+    let schema_of = |kind: &&Kind| {
+        let mut keys = Map::new();
+        keys.insert("kind".into(), json!({ "const": kind.word, "description": kind.title }));
+        let others = before(kind);
+        let mut required = vec!["kind"];
+        required.extend(others.keys().filter(|key| *key == "joint").map(|_| "joint"));
+        keys.extend(others.clone());
+        for key in kind.keys {
+            keys.insert(key.name.into(), value(key));
+            if key.otherwise == Otherwise::Required {
+                required.push(key.name);
+            }
+        }
+        json!({
+            "type": "object",
+            "title": kind.word,
+            "description": kind.title,
+            "properties": keys,
+            "required": required,
+            "additionalProperties": false,
+        })
+    };
+    kinds.iter().map(schema_of).collect()
+}
+
+/// The schema of the value of a key.
+fn value(key: &Key) -> Value {
+    let pair = |items: &str| json!({ "type": "array", "items": { "type": items }, "minItems": 2, "maxItems": 2 });
+    let mut schema = match key.takes {
+        Takes::Number(range) => number(range),
+        Takes::Vector(_) => pair("number"),
+        Takes::Points | Takes::Bodies => pair("string"),
+        Takes::Point | Takes::Body => json!({ "type": "string" }),
+        Takes::Word(words) => json!({ "type": "string", "enum": words }),
+        Takes::Course => json!({ "oneOf": [{ "type": "number" }, { "$ref": "#/$defs/course" }] }),
+    };
+    let unit = if key.unit.is_empty() { String::new() } else { format!(" ({})", key.unit) };
+    schema["description"] = json!(format!("{}{unit}", key.about));
+    if let Otherwise::Default(default) = key.otherwise {
+        schema["default"] = serde_json::from_str(default).unwrap_or_default();
+    }
+    schema
+}
+
+fn number(range: Range) -> Value {
+    match range {
+        Range::Any => json!({ "type": "number" }),
+        Range::Positive => json!({ "type": "number", "exclusiveMinimum": 0 }),
+        Range::NotNegative => json!({ "type": "number", "minimum": 0 }),
+        Range::NotZero => json!({ "type": "number", "not": { "const": 0 } }),
+    }
+}
+
+/// Every key of a case file in tables, in Markdown.
+pub fn tables() -> String {
+    let schema = schema();
+    let mut text = String::from(
+        "# Keys of case files\n\nMade by `freeplay schema --markdown` from what the program reads. SI \
+         throughout: m, kg, s, rad, N.\n\n`freeplay schema > case.schema.json` writes the same for \
+         editors: with a TOML language server (taplo, Even Better TOML), `#:schema case.schema.json` \
+         in the first line of a case has its keys completed, explained and checked as you type.\n",
+    );
+    let defs = &schema["$defs"];
+    table(&mut text, "The case", "", &schema);
+    table(&mut text, "Ground: `[ground]`", "", &schema["properties"]["ground"]);
+    table(&mut text, "Bodies: `[bodies.NAME]`", "", &defs["body"]);
+    kinds(&mut text, "Joints: `[joints.NAME]`", &defs["joint"], joint::KINDS);
+    table(&mut text, "Clearance: `[joints.NAME.clearance]`", "", &defs["clearance"]);
+    table(&mut text, "Normal force: `normal` of a clearance", "", &defs["normal"]);
+    table(&mut text, "Friction: `friction` of a clearance", "", &defs["friction"]);
+    kinds(&mut text, "Drives: `[drives.NAME]`", &defs["drive"], course::KINDS);
+    kinds(&mut text, "Loads: `[loads.NAME]`", &defs["load"], load::KINDS);
+    kinds(&mut text, "Courses: values that change with time", &defs["course"], course::KINDS);
+    table(&mut text, "Start: `[start]`, by body", "", &defs["start"]);
+    table(&mut text, "Run: `[run]`", "", &schema["properties"]["run"]);
+    table(&mut text, "Solver: `[solver]`", "", &schema["properties"]["solver"]);
+    text
+}
+
+/// The tables of every kind of a family.
+fn kinds(text: &mut String, title: &str, family: &Value, kinds: &[&Kind]) {
+    text.push_str(&format!("\n## {title}\n"));
+    let alternatives = family["oneOf"].as_array().map_or(&[][..], Vec::as_slice);
+    for (kind, schema) in kinds.iter().zip(alternatives) {
+        let example = match family["description"] == "A drive" && !kind.example.contains("drives") {
+            true => String::new(),
+            false => format!("\n```toml\n{}\n```\n", kind.example),
+        };
+        let about = format!("{}.\n{example}", capital(kind.title));
+        table(text, &format!("# `{}`", kind.word), &about, schema);
+    }
+}
+
+/// The keys of one table.
+fn table(text: &mut String, title: &str, about: &str, schema: &Value) {
+    text.push_str(&format!("\n##{}{title}\n", if title.starts_with('#') { "" } else { " " }));
+    if !about.is_empty() {
+        text.push_str(&format!("\n{about}"));
+    }
+    let keys = schema["properties"].as_object();
+    let required = schema["required"].as_array().map_or(&[][..], Vec::as_slice);
+    text.push_str("\n| key | meaning | takes | if left out |\n|---|---|---|---|\n");
+    for (key, value) in keys.into_iter().flatten() {
+        let otherwise = match (&value["default"], required.iter().any(|name| name == key)) {
+            (Value::Null, true) => "an error".to_owned(),
+            (Value::Null, false) => String::new(),
+            (default, _) => format!("`{default}`"),
+        };
+        let about = value["description"].as_str().unwrap_or_default().replace('|', "\\|");
+        text.push_str(&format!("| `{key}` | {about} | {} | {otherwise} |\n", takes(value)));
+    }
+}
+
+/// What a value is, in words.
+fn takes(value: &Value) -> String {
+    if let Some(word) = value["const"].as_str() {
+        return format!("`\"{word}\"`");
+    }
+    if let Some(words) = value["enum"].as_array() {
+        let words: Vec<String> = words.iter().map(|word| format!("`{word}`")).collect();
+        return words.join(" or ");
+    }
+    if let Some(either) = value["oneOf"].as_array() {
+        return either.iter().map(takes).collect::<Vec<_>>().join(" or ");
+    }
+    if let Some(reference) = value["$ref"].as_str() {
+        return format!("a {}", reference.trim_start_matches("#/$defs/"));
+    }
+    match value["type"].as_str() {
+        Some("number") => format!("number{}", limits(value)),
+        Some("boolean") => "`true` or `false`".into(),
+        Some("array") => format!("two {}s", value["items"]["type"].as_str().unwrap_or("value")),
+        Some("object") => "table".into(),
+        other => other.unwrap_or_default().to_owned(),
+    }
+}
+
+fn limits(value: &Value) -> String {
+    let limit = |key: &str, sign: &str| {
+        let bound = &value[key];
+        (!bound.is_null()).then(|| format!("{sign} {bound}"))
+    };
+    let not = value["not"]["const"].as_i64().map(|not| format!("≠ {not}"));
+    let all = [
+        limit("exclusiveMinimum", ">"),
+        limit("minimum", "≥"),
+        limit("exclusiveMaximum", "<"),
+        limit("maximum", "≤"),
+        not,
+    ];
+    let all: Vec<String> = all.into_iter().flatten().collect();
+    if all.is_empty() { String::new() } else { format!(" {}", all.join(", ")) }
+}
+
+fn capital(words: &str) -> String {
+    let mut letters = words.chars();
+    letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
+}

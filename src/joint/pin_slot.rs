@@ -1,0 +1,46 @@
+//! Pin in a slot: the second point slides on a line through the first, and its body turns freely.
+//! ```text
+//! Φ = u × d = 0   (m),   d and u as in the prismatic joint
+//! ```
+
+use super::prismatic::AXIS;
+use super::{BETWEEN, Ends, Holonomic, MOST_BODIES, MOST_ROWS, Pair, between, lift, unit};
+use crate::parameter::{Kind, Values};
+use crate::plane::{Pose, Vector};
+use crate::scalar::{Lift, Scalar};
+
+/// The kind and its keys.
+pub const KIND: Kind = Kind {
+    word: "pin-slot",
+    title: "the second point slides on a line through the first, its body free to turn",
+    source: "",
+    example: r#"[joints.slot]
+kind = "pin-slot"
+between = ["lever.O", "crank.A"]
+axis = [1.0, 0.0]"#,
+    keys: &[BETWEEN, AXIS],
+    also: None,
+};
+
+/// The slot: its points and the axis u in the frame of body `i`.
+#[derive(Debug, Clone, Copy)]
+pub struct PinSlot<S> {
+    pair: Pair<S>,
+    axis: Vector<S>,
+}
+
+impl<S: Scalar> PinSlot<S> {
+    /// The slot that these values describe.
+    pub fn new(values: &Values, ends: &Ends<S>) -> Self {
+        PinSlot { pair: ends.pair, axis: unit(values.vector("axis")) }
+    }
+}
+
+impl<S: Scalar> Holonomic<S> for PinSlot<S> {
+    const ROWS: usize = 1;
+
+    fn error<T: Lift<S>>(&self, poses: &[Pose<T>; MOST_BODIES]) -> [T; MOST_ROWS] {
+        let axis = poses[0].rotate(lift(self.axis));
+        [axis.cross(between(&self.pair, poses)), T::zero(), T::zero()]
+    }
+}

@@ -1,0 +1,75 @@
+//! Prismatic: the second point slides along a line through the first, without relative rotation.
+//! ```text
+//! d = (r_j + A_j s_j) − (r_i + A_i s_i),   u = the axis, turning with body i
+//! Φ = [u × d,  θ_j − θ_i − α] = 0   (m, rad);   travel u · d
+//! ```
+
+use super::{BETWEEN, Ends, Holonomic, MOST_BODIES, MOST_ROWS, Pair, between, lift, unit};
+use crate::parameter::{Key, Kind, Otherwise, Range, Takes, Values};
+use crate::plane::{Pose, Vector};
+use crate::scalar::{Lift, Scalar};
+
+/// The key of the line that a point slides on.
+pub(super) const AXIS: Key = Key {
+    name: "axis",
+    takes: Takes::Vector(Range::Positive),
+    unit: "",
+    otherwise: Otherwise::Required,
+    about: "direction of the line, in the first body's frame",
+};
+
+/// The kind and its keys.
+pub const KIND: Kind = Kind {
+    word: "prismatic",
+    title: "the second point slides on a line through the first, without relative rotation",
+    source: "",
+    example: r#"[joints.slide]
+kind = "prismatic"
+between = ["ground.O", "slider.C"]
+axis = [1.0, 0.0]"#,
+    keys: &[
+        BETWEEN,
+        AXIS,
+        Key {
+            name: "angle",
+            takes: Takes::Number(Range::Any),
+            unit: "rad",
+            otherwise: Otherwise::Default("0.0"),
+            about: "angle of the second body relative to the first",
+        },
+    ],
+    also: None,
+};
+
+/// The slide: its points, the axis u in the frame of body `i`, and the angle (rad) of the second
+/// body relative to the first.
+#[derive(Debug, Clone, Copy)]
+pub struct Prismatic<S> {
+    pair: Pair<S>,
+    axis: Vector<S>,
+    angle: S,
+}
+
+impl<S: Scalar> Prismatic<S> {
+    /// The slide that these values describe.
+    pub fn new(values: &Values, ends: &Ends<S>) -> Self {
+        let axis = unit(values.vector("axis"));
+        Prismatic { pair: ends.pair, axis, angle: values.number("angle") }
+    }
+
+    /// Travel u · d (m) of the second point along the line, from the first.
+    pub fn travel<T: Lift<S>>(&self, poses: &[Pose<T>; MOST_BODIES]) -> T {
+        poses[0].rotate(lift(self.axis)).dot(between(&self.pair, poses))
+    }
+}
+
+impl<S: Scalar> Holonomic<S> for Prismatic<S> {
+    const ROWS: usize = 2;
+    const ANGLES: [bool; MOST_ROWS] = [false, true, false];
+
+    fn error<T: Lift<S>>(&self, poses: &[Pose<T>; MOST_BODIES]) -> [T; MOST_ROWS] {
+        let [i, j, _] = poses;
+        let across = i.rotate(lift(self.axis)).cross(between(&self.pair, poses));
+        [across, j.angle - i.angle - T::lift(self.angle), T::zero()]
+    }
+}

@@ -1,0 +1,132 @@
+//! Force at a point of a body, in a direction of the fixed frame or of the body's.
+//! ```text
+//! F = the force given, or f(t) along a direction;   power F · v of the point
+//! ```
+
+use super::{Acts, Ends, Powers, lift};
+use crate::course::Course;
+use crate::parameter::{Key, Kind, Otherwise, Range, Takes, Values};
+use crate::plane::{Motion, Pose, Vector, Wrench};
+use crate::scalar::{Lift, Scalar};
+
+/// The kind and its keys.
+pub const KIND: Kind = Kind {
+    word: "force",
+    title: "a force at a point of a body",
+    source: "",
+    example: r#"[loads.push]
+kind = "force"
+at = "slider.C"
+force = [0.0, -1.0]"#,
+    keys: &[
+        Key {
+            name: "at",
+            takes: Takes::Point,
+            unit: "",
+            otherwise: Otherwise::Required,
+            about: "the point",
+        },
+        Key {
+            name: "force",
+            takes: Takes::Vector(Range::Any),
+            unit: "N",
+            otherwise: Otherwise::Absent,
+            about: "the force, where it does not change",
+        },
+        Key {
+            name: "direction",
+            takes: Takes::Vector(Range::Positive),
+            unit: "",
+            otherwise: Otherwise::Absent,
+            about: "in place of `force`, with `magnitude`: its direction, of any length",
+        },
+        Key {
+            name: "magnitude",
+            takes: Takes::Course,
+            unit: "N",
+            otherwise: Otherwise::Absent,
+            about: "the force along the direction",
+        },
+        Key {
+            name: "frame",
+            takes: Takes::Word(&["fixed", "body"]),
+            unit: "",
+            otherwise: Otherwise::Default("\"fixed\""),
+            about: "the frame that the force is written in",
+        },
+    ],
+    also: Some(one_of_two),
+};
+
+/// A force, or a direction and a magnitude.
+fn one_of_two(values: &Values) -> Option<(&'static str, String)> {
+    let there = |key| values.get(key).is_some();
+    match (there("force"), there("direction"), there("magnitude")) {
+        (true, false, false) | (false, true, true) => None,
+        (true, true, _) => Some(("direction", "is not used where `force` is given".into())),
+        (true, false, true) => Some(("magnitude", "is not used where `force` is given".into())),
+        (false, true, false) => Some(("magnitude", "is missing beside `direction` (N)".into())),
+        (false, false, true) => Some(("direction", "is missing beside `magnitude`".into())),
+        (false, false, false) => Some(("force", "is missing (N)".into())),
+    }
+}
+
+/// The force: its point on the second body, a direction, and the magnitude along it (N).
+#[derive(Debug, Clone, Copy)]
+pub struct Force<S> {
+    at: Vector<S>,
+    direction: Vector<S>,
+    magnitude: Course<S>,
+    turns_along: bool,
+}
+
+impl<S: Scalar> Force<S> {
+    /// The force that these values describe.
+    pub fn new(values: &Values, ends: &Ends<S>) -> Self {
+        let whole = values.get("force").is_some();
+        let [x, y] = values.vector(if whole { "force" } else { "direction" });
+        let along = Vector::new(x, y);
+        Force {
+            at: ends.pair.s_j,
+            direction: if whole { along } else { along * (S::one() / along.norm()) },
+            magnitude: match whole {
+                true => Course::constant(S::one()),
+                false => Course::of_key(values, "magnitude"),
+            },
+            turns_along: values.text("frame") == "body",
+        }
+    }
+
+    /// Force (N) and arm (m) on the second body, fixed frame.
+    fn on<T: Lift<S>>(&self, time: S, pose: &Pose<T>) -> (Vector<T>, Vector<T>) {
+        let along = lift(self.direction);
+        let along = if self.turns_along { pose.rotate(along) } else { along };
+        (along * T::lift(self.magnitude.at(time)[0]), pose.rotate(lift(self.at)))
+    }
+}
+
+impl<S: Scalar> Acts<S> for Force<S> {
+    fn wrenches<T: Lift<S>>(
+        &self,
+        time: S,
+        poses: &[Pose<T>; 2],
+        _: &[Motion<T>; 2],
+    ) -> [Wrench<T>; 2] {
+        let (force, arm) = self.on(time, &poses[1]);
+        [Wrench::none(), Wrench::at(arm, force)]
+    }
+
+    fn powers(&self, time: S, poses: &[Pose<S>; 2], motions: &[Motion<S>; 2]) -> Powers<S> {
+        let (force, arm) = self.on(time, &poses[1]);
+        Powers { work: force.dot(motions[1].at(arm)), dissipation: S::zero() }
+    }
+
+    fn course(&self) -> Option<&Course<S>> {
+        Some(&self.magnitude)
+    }
+
+    fn pace(&self, mass: f64, length: f64) -> f64 {
+        let force = self.magnitude.size() * self.direction.norm().to_f64();
+        (force / (mass * length)).sqrt()
+    }
+}

@@ -1,0 +1,244 @@
+//! Kinds of parts and the keys that they take in case files: what joints, loads, drives and laws
+//! say of themselves. Reading, checks, defaults, the schema and the tables of the documents follow
+//! from here.
+
+use crate::scalar::{Decimal, Scalar};
+
+/// A kind of joint, load or course.
+#[derive(Debug)]
+pub struct Kind {
+    /// The word in case files: `kind = "spring"`.
+    pub word: &'static str,
+    /// What it is, in one line.
+    pub title: &'static str,
+    /// Where the formula is from, or `""` where it is geometry.
+    pub source: &'static str,
+    /// A part of this kind, as a case has it.
+    pub example: &'static str,
+    /// Its keys, in the order of the documents.
+    pub keys: &'static [Key],
+    /// What keys must be together, or must not: the key that is wrong, and why.
+    pub also: Option<fn(&Values) -> Option<(&'static str, String)>>,
+}
+
+/// A key of a kind.
+#[derive(Debug)]
+pub struct Key {
+    /// Name in case files.
+    pub name: &'static str,
+    /// What its value is.
+    pub takes: Takes,
+    /// Unit of its numbers; may be empty.
+    pub unit: &'static str,
+    /// What holds where the key is left out.
+    pub otherwise: Otherwise,
+    /// What it means, in one line.
+    pub about: &'static str,
+}
+
+/// What the value of a key is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Takes {
+    /// A number.
+    Number(Range),
+    /// Two numbers.
+    Vector(Range),
+    /// A point, written `body.point`.
+    Point,
+    /// Two points of two bodies.
+    Points,
+    /// A body, or `ground`.
+    Body,
+    /// Two bodies, one of which may be the ground.
+    Bodies,
+    /// One of some words.
+    Word(&'static [&'static str]),
+    /// A number, or a table with the `kind` of a course of time and its keys.
+    Course,
+}
+
+/// Numbers that a key takes; all of them are finite. Of a vector they are its length.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Range {
+    /// Every number.
+    Any,
+    /// Greater than zero.
+    Positive,
+    /// Zero or greater.
+    NotNegative,
+    /// Other than zero.
+    NotZero,
+}
+
+impl Range {
+    /// Whether a number is in it.
+    pub fn holds(self, x: f64) -> bool {
+        x.is_finite()
+            && match self {
+                Range::Any => true,
+                Range::Positive => x > 0.0,
+                Range::NotNegative => x >= 0.0,
+                Range::NotZero => x != 0.0,
+            }
+    }
+
+    /// In words.
+    pub fn words(self) -> &'static str {
+        match self {
+            Range::Any => "finite",
+            Range::Positive => "positive",
+            Range::NotNegative => "zero or positive",
+            Range::NotZero => "other than zero",
+        }
+    }
+}
+
+/// What holds where a key is left out.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Otherwise {
+    /// It must be there.
+    Required,
+    /// This value, as TOML has it.
+    Default(&'static str),
+    /// Nothing.
+    Absent,
+}
+
+/// A value of a key, as a case has it.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Value {
+    /// A number.
+    Number(Decimal),
+    /// Two numbers.
+    Vector([Decimal; 2]),
+    /// A word or a name.
+    Text(String),
+    /// Two names.
+    Pair([String; 2]),
+    /// A course of time.
+    Course(Box<Values>),
+}
+
+/// The kind of a part and the values of its keys.
+#[derive(Debug, Clone)]
+pub struct Values {
+    kind: &'static Kind,
+    list: Vec<(&'static str, Value)>,
+}
+
+impl PartialEq for Values {
+    fn eq(&self, other: &Self) -> bool {
+        self.kind.word == other.kind.word && self.list == other.list
+    }
+}
+
+impl Values {
+    /// Those of a kind, without any value yet.
+    pub fn new(kind: &'static Kind) -> Self {
+        Values { kind, list: Vec::new() }
+    }
+
+    /// The same with one more value.
+    pub fn with(mut self, key: &'static str, value: Value) -> Self {
+        self.list.push((key, value));
+        self
+    }
+
+    /// The kind.
+    pub fn kind(&self) -> &'static Kind {
+        self.kind
+    }
+
+    /// Whether the kind has this word.
+    pub fn is(&self, word: &str) -> bool {
+        self.kind.word == word
+    }
+
+    /// The value of a key.
+    pub fn get(&self, key: &str) -> Option<&Value> {
+        self.list.iter().find(|(name, _)| *name == key).map(|(_, value)| value)
+    }
+
+    /// A number of a key, in an arithmetic; of a key that takes none, not a number.
+    pub fn number<S: Scalar>(&self, key: &str) -> S {
+        match self.get(key) {
+            Some(Value::Number(number)) => number.value(),
+            _ => S::from_f64(f64::NAN),
+        }
+    }
+
+    /// A number of a key as it is written.
+    pub fn decimal(&self, key: &str) -> Option<&Decimal> {
+        match self.get(key) {
+            Some(Value::Number(number)) => Some(number),
+            _ => None,
+        }
+    }
+
+    /// The two numbers of a key.
+    pub fn vector<S: Scalar>(&self, key: &str) -> [S; 2] {
+        match self.get(key) {
+            Some(Value::Vector([x, y])) => [x.value(), y.value()],
+            _ => [S::from_f64(f64::NAN); 2],
+        }
+    }
+
+    /// The word or name of a key.
+    pub fn text(&self, key: &str) -> &str {
+        match self.get(key) {
+            Some(Value::Text(text)) => text,
+            _ => "",
+        }
+    }
+
+    /// The two names of a key.
+    pub fn pair(&self, key: &str) -> [&str; 2] {
+        match self.get(key) {
+            Some(Value::Pair(names)) => names.each_ref().map(String::as_str),
+            _ => [""; 2],
+        }
+    }
+
+    /// The course of a key.
+    pub fn course(&self, key: &str) -> Option<&Values> {
+        match self.get(key) {
+            Some(Value::Course(course)) => Some(course),
+            _ => None,
+        }
+    }
+}
+
+/// The list of the kinds of a family of parts, one line a kind: the type that holds any of them,
+/// the table of their keys, how each is made, and a macro that does the same with each.
+macro_rules! kinds {
+    ($d:tt $(#[$about:meta])* $any:ident, $each:ident: $($name:ident in $file:ident,)+) => {
+        $(mod $file; pub use $file::$name;)+
+
+        $(#[$about])*
+        #[derive(Debug, Clone, Copy)]
+        pub enum $any<S> {
+            $(#[doc = concat!("See [`", stringify!($name), "`].")] $name($name<S>),)+
+        }
+
+        /// Every kind, with its keys.
+        pub const KINDS: &[&$crate::parameter::Kind] = &[$(&$file::KIND,)+];
+
+        impl<S: Scalar> $any<S> {
+            /// The part that these values describe, where it sits; `None` for a kind of another
+            /// family.
+            pub fn new(values: &Values, ends: &Ends<S>) -> Option<Self> {
+                $(if values.is($file::KIND.word) {
+                    return Some($any::$name($name::new(values, ends)));
+                })+
+                None
+            }
+        }
+
+        macro_rules! $each {
+            ($d any:expr, $d part:ident => $d what:expr) => {
+                match $d any { $($any::$name($d part) => $d what,)+ }
+            };
+        }
+    };
+}
+pub(crate) use kinds;

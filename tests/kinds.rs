@@ -1,0 +1,410 @@
+//! Joints, loads and courses of every kind, each against what is known of it in advance: problems
+//! solved twice in 40 digits and more (`tests/data/problems`), closed forms, and mechanisms that are
+//! the same though they are described otherwise. On both engines, and in 71 digits.
+
+mod simulated;
+
+use freeplay::mechanism::{BodyObservation, Observation};
+use simulated::{Kept, case, case_of, root, simulate};
+use std::f64::consts::PI;
+
+const ENGINES: [&str; 2] = ["solver.engine=\"explicit\"", "solver.engine=\"ida\""];
+
+/// What is compared: a column of the problem and the same of a sample.
+type Column = (&'static str, fn(&Observation) -> f64);
+
+/// Rows of a problem: its columns by name.
+fn problem(name: &str) -> Vec<Vec<(String, f64)>> {
+    let path = root().join("tests/data/problems").join(name).with_extension("csv");
+    let mut reader = csv::ReaderBuilder::new().comment(Some(b'#')).from_path(path).unwrap();
+    let names: Vec<String> = reader.headers().unwrap().iter().map(str::to_owned).collect();
+    let row = |row: csv::StringRecord| {
+        names.iter().cloned().zip(row.iter().map(|value| value.parse().unwrap())).collect()
+    };
+    reader.records().map(|record| row(record.unwrap())).collect()
+}
+
+fn value(row: &[(String, f64)], name: &str) -> f64 {
+    row.iter().find(|(known, _)| known == name).unwrap_or_else(|| panic!("no column {name}")).1
+}
+
+/// Holds a run against a problem: each column to `within` of its largest value.
+fn assert_solves(kept: &Kept, name: &str, columns: &[Column], within: f64) {
+    let rows = problem(name);
+    let end = kept.last().time;
+    let rows: Vec<_> =
+        rows.iter().filter(|row| value(row, "time_s") <= end * (1.0 + 1e-12)).collect();
+    assert!(rows.len() > 20, "{} rows of {name}", rows.len());
+    for (column, of) in columns {
+        let size = rows.iter().map(|row| value(row, column).abs()).fold(0.0, f64::max);
+        for row in &rows {
+            let time = value(row, "time_s");
+            let near = |a: &&Observation, b: &&Observation| {
+                (a.time - time).abs().total_cmp(&(b.time - time).abs())
+            };
+            let sample = kept.samples.iter().min_by(near).unwrap();
+            assert!((sample.time - time).abs() <= 1e-12 * end, "{name} has no sample at {time}");
+            let off = (of(sample) - value(row, column)).abs();
+            assert!(
+                off <= within * size,
+                "{name} {column} at {time} s: off by {off:e} of {size:e}"
+            );
+        }
+    }
+}
+
+fn body(sample: &Observation, k: usize) -> BodyObservation {
+    sample.bodies[k]
+}
+
+#[test]
+fn a_slider_crank_without_freedom_has_the_forces_of_the_closed_form() {
+    let columns: [Column; 12] = [
+        ("slider_x", |s| body(s, 2).position[0]),
+        ("slider_vx", |s| body(s, 2).velocity[0]),
+        ("slider_ax", |s| body(s, 2).acceleration[0]),
+        ("rod_angle", |s| body(s, 1).angle),
+        ("rod_rate", |s| body(s, 1).angular_velocity),
+        ("rod_accel", |s| body(s, 1).angular_acceleration),
+        ("A0_x", |s| s.joints[0].force[0]),
+        ("A0_y", |s| s.joints[0].force[1]),
+        ("A_x", |s| s.joints[1].force[0]),
+        ("B_y", |s| s.joints[2].force[1]),
+        ("guide_y", |s| s.joints[3].force[1]),
+        ("drive_torque", |s| s.drive_torques[0]),
+    ];
+    let kept = simulate(&case("tests/kinds/slider-crank.toml", &[]));
+    assert_solves(&kept, "slider-crank-ideal", &columns, 1e-14);
+}
+
+#[test]
+fn a_slider_crank_with_clearance_at_the_wrist_pin_follows_the_truth() {
+    let columns: [Column; 7] = [
+        ("rod_angle", |s| body(s, 1).angle),
+        ("rod_rate", |s| body(s, 1).angular_velocity),
+        ("slider_x", |s| body(s, 2).position[0]),
+        ("slider_v", |s| body(s, 2).velocity[0]),
+        ("clearance_x", |s| s.clearances[0].offset[0]),
+        ("clearance_y", |s| s.clearances[0].offset[1]),
+        ("normal_force", |s| s.clearances[0].normal_force),
+    ];
+    for (engine, within) in ENGINES.into_iter().zip([1e-9, 1e-7]) {
+        let kept = simulate(&case("tests/kinds/slider-crank-wrist-pin.toml", &[engine]));
+        assert_solves(&kept, "slider-crank-wrist-pin", &columns, within);
+        for (row, contact) in problem("slider-crank-wrist-pin-contacts").iter().zip(&kept.contacts)
+        {
+            for (column, ours) in [
+                ("begin_s", contact.begin),
+                ("end_s", contact.end),
+                ("impact_rate", contact.impact_rate),
+                ("peak_force_N", contact.peak_force),
+                ("peak_force_time_s", contact.peak_time),
+                ("peak_penetration_m", contact.peak_penetration),
+            ] {
+                let known = value(row, column);
+                assert!((ours - known).abs() <= 10.0 * within * known, "{column}: {ours} {known}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_scotch_yoke_has_the_forces_of_the_closed_form() {
+    let columns: [Column; 9] = [
+        ("yoke_x", |s| body(s, 1).position[0]),
+        ("yoke_vx", |s| body(s, 1).velocity[0]),
+        ("yoke_ax", |s| body(s, 1).acceleration[0]),
+        // the crank's pin is the second of the slot's points
+        ("slot_force_on_yoke_x", |s| -s.joints[1].force[0]),
+        ("guide_y", |s| s.joints[2].force[1]),
+        ("guide_moment_about_yoke_centre", |s| s.joints[2].moment),
+        ("A0_x", |s| s.joints[0].force[0]),
+        ("A0_y", |s| s.joints[0].force[1]),
+        ("drive_torque", |s| s.drive_torques[0]),
+    ];
+    let kept = simulate(&case("tests/kinds/scotch-yoke.toml", &[]));
+    assert_solves(&kept, "scotch-yoke", &columns, 1e-13);
+}
+
+#[test]
+fn masses_on_springs_and_gears_follow_the_truth() {
+    let block: [Column; 2] = [("x", |s| body(s, 0).position[0]), ("v", |s| body(s, 0).velocity[0])];
+    let gears: [Column; 6] = [
+        ("theta1", |s| body(s, 0).angle),
+        ("rate1", |s| body(s, 0).angular_velocity),
+        ("theta2", |s| body(s, 1).angle),
+        ("rate2", |s| body(s, 1).angular_velocity),
+        ("theta3", |s| body(s, 2).angle),
+        ("rate3", |s| body(s, 2).angular_velocity),
+    ];
+    let problems: [(&str, &[Column]); 3] =
+        [("duffing", &block), ("spring-damper", &block), ("gears", &gears)];
+    for (name, columns) in problems {
+        for (engine, within) in ENGINES.into_iter().zip([3e-11, 1e-8]) {
+            let kept = simulate(&case(&format!("tests/kinds/{name}.toml"), &[engine]));
+            assert_solves(&kept, name, columns, within);
+            let energy = kept.largest(|s| s.energy.kinetic);
+            assert!(kept.largest(|s| s.energy.residual) <= within * energy, "{name}, {engine}");
+        }
+    }
+}
+
+#[test]
+fn seventy_one_digits_know_every_kind() {
+    for (name, end) in [("duffing", "0.2"), ("gears", "0.4")] {
+        let until = format!("run.duration={end}");
+        let octuple =
+            [ENGINES[0], "solver.precision=71", "solver.reference_tolerance=1e-40", &until];
+        let exact = simulate(&case(&format!("tests/kinds/{name}.toml"), &octuple));
+        let block: [Column; 1] = [("x", |s| body(s, 0).position[0])];
+        let gears: [Column; 1] = [("theta3", |s| body(s, 2).angle)];
+        let columns = if name == "gears" { gears } else { block };
+        let rows = problem(name).len();
+        assert!(rows > 20);
+        let last = exact.last();
+        let row = problem(name);
+        let row = row.iter().find(|row| (value(row, "time_s") - last.time).abs() < 1e-12).unwrap();
+        let (column, of) = columns[0];
+        let off = (of(last) - value(row, column)).abs();
+        assert!(off <= 4e-16 * value(row, column).abs().max(1e-3), "{name}: {off:e}");
+    }
+}
+
+/// A case of one body, and whatever else.
+fn with_body(rest: &str) -> String {
+    format!(
+        "name = \"kind\"\n[ground]\npoints = {{ O = [0.0, 0.0], P = [0.3, 0.1] }}\n\
+         [bodies.rod]\nmass = 0.5\ninertia = 0.015\n\
+         points = {{ O = [-0.3, 0.0], C = [0.0, 0.0], E = [0.3, 0.0] }}\n{rest}\n\
+         [run]\nduration = 0.5\nsample_interval = 0.01\n\
+         [solver]\nrelative_tolerance = 1e-12\nabsolute_tolerance = \"scaled\"\n"
+    )
+}
+
+const GRAVITY: &str = "[loads.g]\nkind = \"gravity\"\nacceleration = [0.0, -9.81]\n";
+const PIVOT: &str = "[joints.O]\nkind = \"revolute\"\nbetween = [\"ground.O\", \"rod.O\"]\n";
+
+fn runs(rest: &str) -> [Kept; 2] {
+    ENGINES.map(|engine| simulate(&case_of(&with_body(rest), &[engine])))
+}
+
+/// Holds a quantity of every sample against a function of time.
+fn assert_is(
+    kept: &Kept,
+    what: &str,
+    of: impl Fn(&Observation) -> f64,
+    known: impl Fn(f64) -> f64,
+) {
+    let size = kept.samples.iter().map(|s| known(s.time).abs()).fold(1e-3, f64::max);
+    for sample in &kept.samples {
+        let off = (of(sample) - known(sample.time)).abs();
+        assert!(off <= 3e-8 * size, "{what} at {} s: off by {off:e} of {size:e}", sample.time);
+    }
+}
+
+#[test]
+fn a_body_on_a_massless_link_through_its_centre_is_a_simple_pendulum() {
+    let link = "[joints.link]\nkind = \"distance\"\nbetween = [\"ground.O\", \"rod.C\"]\n\
+                length = 0.25\n[start]\nrod = { x = 0.25, y = 0.0, fixed = true }\n";
+    for kept in runs(&format!("{link}{GRAVITY}")) {
+        let off = |s: &Observation| body(s, 0).position[0].hypot(body(s, 0).position[1]) - 0.25;
+        assert!(kept.largest(off) < 1e-12);
+        // from the horizontal: v² = 2 g h, and the tension is 3 m g h/L
+        for sample in &kept.samples {
+            let at = body(sample, 0);
+            let fallen = -at.position[1];
+            let square = at.velocity[0].powi(2) + at.velocity[1].powi(2);
+            assert!((square - 2.0 * 9.81 * fallen).abs() < 1e-7, "{square} {fallen}");
+            let tension = 3.0 * 0.5 * 9.81 * fallen / 0.25;
+            let [x, y] = sample.joints[0].force;
+            let along = -(x * at.position[0] + y * at.position[1]) / 0.25;
+            assert!((along - tension).abs() < 1e-6, "{along} {tension}");
+        }
+        assert_is(&kept, "angle", |s| body(s, 0).angle, |_| 0.0);
+    }
+}
+
+#[test]
+fn bodies_that_are_welded_are_one_body() {
+    // half of the rod on each side of its centre, at an angle that the points make up for
+    let halves = "[bodies.left]\nmass = 0.25\ninertia = 0.001875\n\
+        points = { O = [-0.15, 0.0], W = [0.15, 0.0] }\n\
+        [bodies.right]\nmass = 0.25\ninertia = 0.001875\npoints = { W = [0.0, 0.15] }\n\
+        [joints.O]\nkind = \"revolute\"\nbetween = [\"ground.O\", \"left.O\"]\n\
+        [joints.weld]\nkind = \"fixed\"\nbetween = [\"left.W\", \"right.W\"]\n\
+        angle = 1.5707963267948966192313216916397514420985846996875529\n\
+        [start]\nleft = { angle = 0.0, fixed = true }\n";
+    let text = with_body(&format!("{halves}{GRAVITY}"));
+    let begin = text.find("[bodies.rod]").unwrap();
+    let end = text.find("[bodies.left]").unwrap();
+    let text = format!("{}{}", &text[..begin], &text[end..]);
+    let whole = format!("{PIVOT}{GRAVITY}[start]\nrod = {{ angle = 0.0, fixed = true }}\n");
+    let [explicit, _] = runs(&whole);
+    for engine in ENGINES {
+        let welded = simulate(&case_of(&text, &[engine]));
+        for (one, two) in explicit.samples.iter().zip(&welded.samples) {
+            assert!((body(one, 0).angle - body(two, 0).angle).abs() < 1e-8);
+            let off = body(two, 1).angle - body(two, 0).angle - PI / 2.0;
+            assert!(off.abs() < 1e-12, "{off:e}");
+            let [a, b] = [one.joints[0].force, two.joints[0].force];
+            assert!((a[0] - b[0]).hypot(a[1] - b[1]) < 1e-6, "{a:?} {b:?}");
+        }
+        // the weld carries the weight of the right half at rest: force and moment at its point
+        let first = &welded.samples[0].joints[1];
+        assert!(first.force[1].abs() > 0.1 && first.moment.abs() > 1e-3, "{first:?}");
+    }
+}
+
+#[test]
+fn a_crank_that_swings_has_the_torque_of_newton_and_euler() {
+    let drive = "[drives.d]\njoint = \"O\"\nkind = \"harmonic\"\nmean = 0.4\namplitude = 0.7\n\
+                 angular_frequency = 21.0\nphase = 0.3\n";
+    let inertia = 0.015 + 0.5 * 0.09;
+    for kept in runs(&format!("{PIVOT}{drive}")) {
+        let angle = |t: f64| 0.4 + 0.7 * (21.0 * t + 0.3).cos();
+        let bend = |t: f64| -0.7 * 441.0 * (21.0 * t + 0.3).cos();
+        let rate = |t: f64| -0.7 * 21.0 * (21.0 * t + 0.3).sin();
+        assert_is(&kept, "angle", |s| body(s, 0).angle, angle);
+        assert_is(&kept, "acceleration", |s| body(s, 0).angular_acceleration, bend);
+        assert_is(&kept, "torque", |s| s.drive_torques[0], |t| inertia * bend(t));
+        assert_is(&kept, "x", |s| body(s, 0).position[0], |t| 0.3 * angle(t).cos());
+        let x_bend = |t: f64| -0.3 * (bend(t) * angle(t).sin() + rate(t).powi(2) * angle(t).cos());
+        assert_is(&kept, "ẍ", |s| body(s, 0).acceleration[0], x_bend);
+        assert_is(&kept, "force", |s| s.joints[0].force[0], |t| 0.5 * x_bend(t));
+        assert_is(&kept, "balance", |s| s.energy.residual, |_| 0.0);
+    }
+}
+
+#[test]
+fn a_ramp_ends_at_its_speed_and_the_work_is_the_energy() {
+    let drive = "[drives.d]\njoint = \"O\"\nkind = \"ramp\"\nspeed_rpm = 600.0\ntime = 0.213\n\
+                 angle = 0.1\n";
+    let speed = 600.0 * PI / 30.0;
+    for kept in runs(&format!("{PIVOT}{drive}")) {
+        let x = |t: f64| (t / 0.213).min(1.0);
+        let rate = |t: f64| speed * x(t).powi(3) * (10.0 - 15.0 * x(t) + 6.0 * x(t).powi(2));
+        assert_is(&kept, "rate", |s| body(s, 0).angular_velocity, rate);
+        let angle = |t: f64| {
+            let gone = x(t).powi(4) * (2.5 - 3.0 * x(t) + x(t).powi(2));
+            0.1 + speed * (0.213 * gone + (t - 0.213).max(0.0))
+        };
+        assert_is(&kept, "angle", |s| body(s, 0).angle, angle);
+        let energy = |t: f64| 0.5 * (0.015 + 0.045) * rate(t).powi(2);
+        assert_is(&kept, "work", |s| s.energy.drive_work, energy);
+    }
+}
+
+#[test]
+fn a_slide_that_is_driven_takes_the_force_of_newton() {
+    let slide = "[joints.g]\nkind = \"prismatic\"\nbetween = [\"ground.P\", \"rod.C\"]\n\
+                 axis = [3.0, 4.0]\nangle = 0.2\n[start]\nrod = { x = 0.36, y = 0.18, angle = 0.2 }\n\
+                 [drives.d]\njoint = \"g\"\nkind = \"harmonic\"\nmean = 0.1\namplitude = 0.05\n\
+                 angular_frequency = 30.0\n";
+    for kept in runs(slide) {
+        let travel = |t: f64| 0.1 + 0.05 * (30.0 * t).cos();
+        let bend = |t: f64| -45.0 * (30.0 * t).cos();
+        assert_is(&kept, "x", |s| body(s, 0).position[0], |t| 0.3 + 0.6 * travel(t));
+        assert_is(&kept, "y", |s| body(s, 0).position[1], |t| 0.1 + 0.8 * travel(t));
+        assert_is(&kept, "angle", |s| body(s, 0).angle, |_| 0.2);
+        assert_is(&kept, "force", |s| s.drive_torques[0], |t| 0.5 * bend(t));
+        assert_is(&kept, "balance", |s| s.energy.residual, |_| 0.0);
+    }
+    let steady = slide.replace(
+        "kind = \"harmonic\"\nmean = 0.1\namplitude = 0.05\nangular_frequency = 30.0\n",
+        "velocity = 0.7\nposition = 0.1\n",
+    );
+    for kept in runs(&steady) {
+        assert_is(&kept, "x", |s| body(s, 0).position[0], |t| 0.3 + 0.6 * (0.1 + 0.7 * t));
+    }
+}
+
+#[test]
+fn torques_and_forces_do_the_work_that_their_bodies_have() {
+    let torque = "[loads.m]\nkind = \"torque\"\nbody = \"rod\"\n\
+        torque = { kind = \"harmonic\", amplitude = 0.8, angular_frequency = 11.0 }\n";
+    let inertia = 0.015 + 0.5 * 0.09;
+    for kept in runs(&format!("{PIVOT}{torque}[start]\nrod = {{ angle = 0.0, fixed = true }}\n")) {
+        let rate = |t: f64| 0.8 / inertia / 11.0 * (11.0 * t).sin();
+        assert_is(&kept, "rate", |s| body(s, 0).angular_velocity, rate);
+        assert_is(
+            &kept,
+            "angle",
+            |s| body(s, 0).angle,
+            |t| 0.8 / inertia / 121.0 * (1.0 - (11.0 * t).cos()),
+        );
+        let energy = |t: f64| 0.5 * inertia * rate(t).powi(2);
+        assert_is(&kept, "work", |s| s.energy.load_work, energy);
+    }
+    // a force that turns with its body, across the arm: a constant torque about the pivot
+    let along = "[loads.f]\nkind = \"force\"\nat = \"rod.E\"\nframe = \"body\"\n\
+        direction = [0.0, 5.0]\nmagnitude = 0.25\n";
+    let start = "[start]\nrod = { angle = 0.0, fixed = true }\n";
+    for kept in runs(&format!("{PIVOT}{along}{start}")) {
+        let bend = 0.25 * 0.6 / inertia;
+        assert_is(&kept, "angle", |s| body(s, 0).angle, |t| 0.5 * bend * t * t);
+        assert_is(&kept, "balance", |s| s.energy.residual, |_| 0.0);
+    }
+    // the same twice: fixed in space, on a free body, written as a whole
+    let fixed = "[loads.f]\nkind = \"force\"\nat = \"rod.C\"\nforce = [0.3, -0.4]\n\
+        [start]\nrod = { x = 0.0, y = 0.0, fixed = true }\n";
+    for kept in runs(fixed) {
+        assert_is(&kept, "x", |s| body(s, 0).position[0], |t| 0.3 * t * t);
+        assert_is(&kept, "y", |s| body(s, 0).position[1], |t| -0.4 * t * t);
+    }
+}
+
+#[test]
+fn what_does_not_belong_to_a_kind_is_told_with_its_key() {
+    let gear = "[bodies.b]\nmass = 1.0\ninertia = 1.0\n[joints.m]\nkind = \"gear\"\n\
+                between = [\"rod\", \"b\"]\nratio = -1.0\n";
+    let cases: [(String, &str); 9] = [
+        (
+            "[joints.s]\nkind = \"distance\"\nbetween = [\"ground.O\", \"rod.C\"]\nlength = 0\n"
+                .into(),
+            "joints.s.length: must be positive (m), is 0",
+        ),
+        (
+            "[joints.s]\nkind = \"prismatic\"\nbetween = [\"ground.O\", \"rod.C\"]\n".into(),
+            "joints.s.axis: is missing",
+        ),
+        (
+            "[joints.s]\nkind = \"pin-slot\"\nbetween = [\"ground.O\", \"rod.C\"]\naxis = [0, 0]\n"
+                .into(),
+            "joints.s.axis: must be positive in length, is 0",
+        ),
+        (format!("{gear}ratio2 = 1\n"), "joints.m.ratio2: unknown key (did you mean \"ratio\"?)"),
+        (
+            format!("{gear}[drives.d]\njoint = \"m\"\nspeed_rpm = 1\n"),
+            "drives.d.joint: joint \"m\" is \"gear\", which has nothing to drive",
+        ),
+        (
+            format!("{PIVOT}[drives.d]\njoint = \"O\"\nvelocity = 1\n"),
+            "drives.d.speed_rpm: is missing",
+        ),
+        (
+            "[loads.t]\nkind = \"torque\"\nbody = \"rot\"\ntorque = 1\n".into(),
+            "loads.t.body: there is no body \"rot\" (did you mean \"rod\"?)",
+        ),
+        (
+            "[loads.t]\nkind = \"force\"\nat = \"rod.C\"\nmagnitude = 1\n".into(),
+            "loads.t.direction: is missing beside `magnitude`",
+        ),
+        (
+            "[loads.t]\nkind = \"torque\"\nbody = \"rod\"\ntorque = { kind = \"harmonie\" }\n"
+                .into(),
+            "loads.t.torque.kind: must be one of",
+        ),
+    ];
+    for (rest, told) in cases {
+        let path = std::path::Path::new("case.toml");
+        let changes = freeplay::case::Changes::default();
+        let read = freeplay::case::Case::from_text(path, &with_body(&rest), &changes);
+        let mut words = String::new();
+        let mut cause: Option<&dyn std::error::Error> = read.as_ref().err().map(|error| error as _);
+        while let Some(error) = cause {
+            words = format!("{words}\n{error}");
+            cause = error.source();
+        }
+        assert!(words.contains(told), "{rest}\n{words}");
+    }
+}
