@@ -4,10 +4,11 @@
 //! laws the keys stand here.
 
 use super::table_reader::{ReadKind, TableReader};
+use crate::contact::Damping;
 use crate::model::{
     BodyDescription, ClearanceDescription, Description, DriveDescription, FrictionDescription,
-    JointDescription, LoadDescription, NamedPoint, NormalDescription, NormalLawName,
-    StartDescription, StiffnessDescription, Tension,
+    JointDescription, LoadDescription, NamedPoint, NormalDescription, StartDescription,
+    StiffnessDescription, Tension,
 };
 use crate::{course, joint, load};
 
@@ -69,7 +70,7 @@ fn clearance(keys: &mut TableReader) -> ClearanceDescription {
 }
 
 fn normal(keys: &mut TableReader) -> NormalDescription {
-    let law = keys.choice("law", &NormalLawName::ALL, None);
+    let law = keys.choice("law", &Damping::ALL, None);
     let stiffness = keys.number_or_choice(
         "stiffness",
         "N/mⁿ",
@@ -81,7 +82,7 @@ fn normal(keys: &mut TableReader) -> NormalDescription {
         keys.leave_unchecked(); // which other keys are wanted hangs on these two
     }
     NormalDescription {
-        law: law.unwrap_or(NormalLawName::Hertz),
+        law: law.unwrap_or(Damping::Hertz),
         restitution: keys.optional("restitution", ""),
         stiffness: stiffness.unwrap_or(StiffnessDescription::HertzPrinted),
         young: keys.optional("young", "Pa"),

@@ -1,6 +1,7 @@
 //! The JSON Schema of case files, and the same in tables. Joints, drives, loads and courses come from
 //! what their kinds say of themselves; the other keys stand in `schema.json`.
 
+use crate::contact::Damping;
 use crate::parameter::{Key, Kind, Otherwise, Range, Takes};
 use crate::{course, joint, load};
 use serde_json::{Map, Value, json};
@@ -20,6 +21,8 @@ pub fn schema() -> Value {
     for (name, about, alternatives) in kinds {
         schema["$defs"][name] = json!({ "description": about, "oneOf": alternatives });
     }
+    let laws: Vec<&str> = Damping::ALL.iter().map(|(word, _)| *word).collect();
+    schema["$defs"]["normal"]["properties"]["law"]["enum"] = json!(laws);
     // the kind of a drive may be left out
     let drives = schema["$defs"]["drive"]["oneOf"].as_array_mut();
     for drive in drives.into_iter().flatten() {

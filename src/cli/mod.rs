@@ -6,6 +6,7 @@ mod compare;
 mod completions;
 mod export;
 mod info;
+mod laws;
 mod man;
 mod new;
 mod plot;
@@ -57,6 +58,8 @@ enum Command {
     Report(report::Arguments),
     /// Print what has a shell complete commands and options.
     Completions(completions::Arguments),
+    /// List the laws of the contact force, with what each really gives.
+    Laws(laws::Arguments),
     /// Print the JSON Schema of case files, for editors.
     Schema(schema::Arguments),
     /// Write manual pages.
@@ -187,6 +190,7 @@ pub fn main() -> ExitCode {
         Command::Export(arguments) => export::export(&arguments),
         Command::Report(arguments) => report::report(&arguments),
         Command::Completions(arguments) => completions::completions(&arguments),
+        Command::Laws(arguments) => laws::laws(&arguments),
         Command::Schema(arguments) => schema::schema_of_cases(&arguments),
         Command::Man(arguments) => man::man(&arguments),
     };

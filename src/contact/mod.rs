@@ -4,14 +4,17 @@
 //! ```text
 //! F_N = K δⁿ [ 1 + a δ̇/δ̇⁽⁻⁾ ]
 //! ```
-//! and its file says what the damping weight `a` is. δ is the penetration, δ̇ its rate (positive
+//! and the file of its damping says what the weight `a` is. δ is the penetration, δ̇ its rate (positive
 //! while the bodies approach), δ̇⁽⁻⁾ the rate at which the contact began. One isolated impact
 //! rebounds at e times its speed, with e the root of `a (1 + e) = ln((1 + a)/(1 − a e))`, whatever
 //! K, m, n and the speed.
 
-pub mod hertz;
-pub mod lankarani_nikravesh;
+mod damping;
+mod impact;
 pub mod stiffness;
+
+pub use damping::{About, Damping};
+pub use impact::Impact;
 
 use crate::scalar::Scalar;
 
@@ -223,7 +226,7 @@ mod tests {
     use proptest::prelude::*;
 
     fn law<S: Scalar>(exponent: f64) -> NormalLaw<S> {
-        let a = lankarani_nikravesh::damping_weight(S::parse("0.9").unwrap());
+        let a = Damping::LankaraniNikravesh.weight(S::parse("0.9").unwrap());
         NormalLaw::new(S::from_f64(1.04e10), S::from_f64(exponent), a)
     }
 
@@ -292,10 +295,10 @@ mod tests {
     fn lankarani_nikravesh_rebounds_faster_than_its_restitution() {
         // found by integrating the impact
         for (restitution, exact) in [(0.9, 0.913177), (0.5, 0.725241), (0.3, 0.684225)] {
-            let found = rebound(lankarani_nikravesh::damping_weight(restitution));
+            let found = rebound(Damping::LankaraniNikravesh.weight(restitution));
             assert!((found - exact).abs() < 5e-7, "{restitution}: {found}");
         }
-        assert_eq!(rebound(hertz::damping_weight()), 1.0);
+        assert_eq!(rebound(Damping::Hertz.weight(0.5)), 1.0);
     }
 
     #[test]

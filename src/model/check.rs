@@ -5,7 +5,7 @@ use super::normal_law;
 use super::{
     BodyDescription, ClearanceDescription, Complaint, Complaints, Description, DriveDescription,
     FrictionDescription, JointDescription, KeyPath, LoadDescription, NamedPoint, NormalDescription,
-    NormalLawName, OfMaterials, StartDescription, StiffnessDescription, shortened,
+    OfMaterials, StartDescription, StiffnessDescription, shortened,
 };
 use crate::joint::{PRISMATIC, REVOLUTE};
 use crate::parameter::{Key, Takes, Value, Values};
@@ -301,11 +301,7 @@ fn of_each(constant: &Option<OfMaterials>) -> impl Iterator<Item = &Decimal> {
 
 /// A law that dissipates needs a restitution, one that does not takes none.
 fn check_restitution(complaints: &mut Complaints, key: KeyPath, normal: &NormalDescription) {
-    let dissipates = match normal.law {
-        NormalLawName::Hertz => false,
-        NormalLawName::LankaraniNikravesh => true,
-    };
-    let law = normal.law.name();
+    let (dissipates, law) = (normal.law.about().restitution, normal.law.about().word);
     match &normal.restitution {
         None if dissipates => complaints.add(key, format!("is missing; law {law:?} needs it")),
         Some(_) if !dissipates => complaints.add(key, format!("law {law:?} takes no restitution")),

@@ -3,6 +3,7 @@
 //! Numbers are decimals as written; names are words. [`Model::new`](super::Model::new) checks a
 //! description and reads its numbers into an arithmetic.
 
+use crate::contact::Damping;
 use crate::parameter::Values;
 use crate::scalar::Decimal;
 
@@ -96,8 +97,8 @@ pub enum Tension {
 /// A normal-force law and its parameters.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NormalDescription {
-    /// Which law, by its name in case files.
-    pub law: NormalLawName,
+    /// The law of its damping.
+    pub law: Damping,
     /// Restitution c_e in (0, 1]; the Hertz law has none.
     pub restitution: Option<Decimal>,
     /// Generalized stiffness.
@@ -117,28 +118,6 @@ pub struct OfMaterials {
     pub bearing: Decimal,
     /// Of the journal's.
     pub journal: Decimal,
-}
-
-/// Names of the normal-force laws.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum NormalLawName {
-    /// `hertz`: elastic.
-    Hertz,
-    /// `lankarani-nikravesh`: the paper's.
-    LankaraniNikravesh,
-}
-
-impl NormalLawName {
-    /// Every law, with its name in case files.
-    pub const ALL: [(&'static str, NormalLawName); 2] = [
-        ("lankarani-nikravesh", NormalLawName::LankaraniNikravesh),
-        ("hertz", NormalLawName::Hertz),
-    ];
-
-    /// The name in case files.
-    pub fn name(self) -> &'static str {
-        Self::ALL.iter().find(|(_, law)| *law == self).map_or("", |(name, _)| name)
-    }
 }
 
 /// Where the stiffness K of a contact comes from.

@@ -14,7 +14,7 @@ pub use complaint::*;
 pub use description::*;
 
 use crate::clearance::Clearance;
-use crate::contact::{NormalLaw, hertz, lankarani_nikravesh, stiffness};
+use crate::contact::{NormalLaw, stiffness};
 use crate::course::Course;
 use crate::friction::Ambrosio;
 use crate::joint::{self, Pair, Relation};
@@ -344,12 +344,7 @@ fn normal_law<S: Scalar>(normal: &NormalDescription, bearing: S, journal: S) -> 
         }
         StiffnessDescription::Number(k) => k.value(),
     };
-    let damping_weight = match normal.law {
-        NormalLawName::Hertz => hertz::damping_weight(),
-        NormalLawName::LankaraniNikravesh => {
-            lankarani_nikravesh::damping_weight(number(normal.restitution.as_ref()))
-        }
-    };
+    let damping_weight = normal.law.weight(number(normal.restitution.as_ref()));
     NormalLaw::new(k, normal.exponent.value(), damping_weight)
 }
 

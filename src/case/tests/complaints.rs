@@ -184,7 +184,7 @@ const BAD: &[(&str, &str, &str)] = &[
     (
         "\"lankarani-nikravesh\"",
         "\"lankarani\"",
-        "joints.A.clearance.normal.law: must be \"lankarani-nikravesh\" or \"hertz\", is \"lankarani\" (did you mean \"lankarani-nikravesh\"?)",
+        "joints.A.clearance.normal.law: must be one of \"lankarani-nikravesh\", \"hertz\", \"hunt-crossley\", \"herbert-mcwhannell\", \"lee-wang\", \"gonthier\", \"zhiying-qishao\", \"flores\", \"hu-guo\", \"carvalho-martins\", \"exact\", is \"lankarani\" (did you mean \"lankarani-nikravesh\"?)",
     ),
     (
         "restitution = 0.9, ",

@@ -5,7 +5,8 @@ mod changes;
 mod complaints;
 
 use super::*;
-use crate::model::{Model, NormalLawName, StiffnessDescription, Tension};
+use crate::contact::Damping;
+use crate::model::{Model, StiffnessDescription, Tension};
 use crate::scalar::Decimal;
 use std::fs;
 use std::path::PathBuf;
@@ -67,7 +68,7 @@ fn the_paper_s_case_a_is_read_as_it_is_written() {
     assert_eq!(d.bodies[1].mass.to_string(), "0.0737");
     assert_eq!(d.bodies[1].points[0].at[0].to_string(), "-0.09");
     let clearance = d.joints[1].clearance.as_ref().unwrap();
-    assert_eq!(clearance.normal.law, NormalLawName::LankaraniNikravesh);
+    assert_eq!(clearance.normal.law, Damping::LankaraniNikravesh);
     assert_eq!(clearance.normal.stiffness, StiffnessDescription::HertzPrinted);
     assert_eq!(clearance.normal.exponent.to_string(), "1.5");
     assert_eq!(clearance.tension, Tension::Keep);

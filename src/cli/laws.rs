@@ -1,0 +1,127 @@
+//! `freeplay laws [NAME]`
+
+use super::Failure;
+use crate::contact::{Damping, Impact};
+use crate::post::table;
+use serde_json::{Value, json};
+
+/// Arguments of `laws`.
+#[derive(Debug, clap::Args)]
+pub struct Arguments {
+    /// One law, by its name in case files.
+    name: Option<String>,
+    /// Nominal restitutions, separated by commas.
+    #[arg(long, value_name = "LIST", value_delimiter = ',', default_values_t = [0.9, 0.5, 0.3])]
+    restitution: Vec<f64>,
+    /// Print JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+/// The exponent that penetrations and durations are told for.
+const EXPONENT: f64 = 1.5;
+
+#[derive(Debug, thiserror::Error)]
+enum Wrong {
+    #[error("there is no law {name:?}{near}; `freeplay laws` lists them")]
+    Name { name: String, near: String },
+    #[error("a restitution must be greater than 0 and at most 1, is {0}")]
+    Restitution(f64),
+}
+
+/// Prints the laws of the normal force and what each really gives.
+pub(super) fn laws(arguments: &Arguments) -> Result<(), Failure> {
+    if let Some(wrong) = arguments.restitution.iter().find(|e| !(**e > 0.0 && **e <= 1.0)) {
+        return Err(Failure::input(Wrong::Restitution(*wrong)));
+    }
+    let laws = Damping::ALL.into_iter();
+    let laws: Vec<Damping> = match &arguments.name {
+        None => laws.map(|(_, law)| law).collect(),
+        Some(name) => laws.filter(|(word, _)| word == name).map(|(_, law)| law).collect(),
+    };
+    if let (Some(name), true) = (&arguments.name, laws.is_empty()) {
+        let words = Damping::ALL.iter().map(|(word, _)| *word);
+        let near = crate::model::did_you_mean(name, words);
+        return Err(Failure::input(Wrong::Name { name: name.clone(), near }));
+    }
+    if arguments.json {
+        let all: Vec<Value> = laws.iter().map(|law| told(*law, &arguments.restitution)).collect();
+        return super::print_json(format_args!("{:#}\n", Value::from(all)));
+    }
+    match laws[..] {
+        [law] if arguments.name.is_some() => super::print(in_full(law, &arguments.restitution)),
+        _ => super::print(menu(&laws, &arguments.restitution)),
+    }
+}
+
+fn told(law: Damping, restitutions: &[f64]) -> Value {
+    let about = law.about();
+    let impact = |e: &f64| {
+        let weight: f64 = law.weight(*e);
+        let Impact { rebound, depth, duration } = Impact::new(weight, EXPONENT);
+        json!({
+            "nominal": e,
+            "damping_weight": weight,
+            "achieved": rebound,
+            "depth_over_elastic": depth,
+            "duration_over_elastic": duration,
+        })
+    };
+    json!({
+        "law": about.word,
+        "formula": about.formula,
+        "source": about.source,
+        "valid": about.valid,
+        "takes_restitution": about.restitution,
+        "impacts": restitutions.iter().map(impact).collect::<Vec<_>>(),
+    })
+}
+
+/// The laws in a table: the rebound of each at each restitution.
+fn menu(laws: &[Damping], restitutions: &[f64]) -> String {
+    let mut heads = vec!["law".to_owned(), "damping weight".to_owned()];
+    heads.extend(restitutions.iter().map(|e| format!("e = {e}")));
+    let row = |law: &Damping| {
+        let about = law.about();
+        let mut row = vec![about.word.to_owned(), about.formula.to_owned()];
+        let achieved = |e: &f64| format!("{:.6}", crate::contact::rebound(law.weight(*e)));
+        row.extend(restitutions.iter().map(achieved));
+        row
+    };
+    let rows = laws.iter().map(row).collect();
+    format!(
+        "Normal force F = K δⁿ [1 + a δ̇/δ̇⁽⁻⁾]: what one impact really rebounds at, over its speed, for a\n\
+         nominal restitution e, whatever stiffness, exponent, mass and speed\n\n{}\n\nfreeplay laws NAME \
+         shows one in full; friction: docs/cases.md\n",
+        table(heads, rows, 2)
+    )
+}
+
+/// One law with all that it says of itself.
+fn in_full(law: Damping, restitutions: &[f64]) -> String {
+    let about = law.about();
+    let heads = ["e", "a", "rebound", "depth", "duration", "pulls where the rate is below"];
+    let row = |e: &f64| {
+        let weight: f64 = law.weight(*e);
+        let impact = Impact::new(weight, EXPONENT);
+        let pulls = match weight > 0.0 {
+            true => format!("{:.4} δ̇⁽⁻⁾", -1.0 / weight),
+            false => "never".into(),
+        };
+        let numbers = [weight, impact.rebound, impact.depth, impact.duration];
+        let mut row = vec![e.to_string()];
+        row.extend(numbers.map(|number| format!("{number:.6}")));
+        row.push(pulls);
+        row
+    };
+    let rows = restitutions.iter().map(row).collect();
+    format!(
+        "{}: F = K δⁿ [1 + a δ̇/δ̇⁽⁻⁾], {}\n{}\n{}\n\nOne impact, n = 1.5; depth and duration over those of \
+         an elastic one with the same K, mass and speed:\n\n{}\n",
+        about.word,
+        about.formula,
+        about.valid,
+        about.source,
+        table(heads.map(str::to_owned).to_vec(), rows, 1)
+    )
+}
