@@ -30,3 +30,6 @@ pub mod compare;
 pub mod figure;
 pub mod report;
 pub mod cli;
+
+#[cfg(test)]
+mod scratch;

@@ -209,25 +209,27 @@ impl Values {
 }
 
 /// The list of the kinds of a family of parts, one line a kind: the type that holds any of them,
-/// the table of their keys, how each is made, and a macro that does the same with each.
+/// the table of their keys, how each is made, and a macro that does the same with each. A line may
+/// stand under an attribute (`#[cfg(test)]`).
 macro_rules! kinds {
-    ($d:tt $(#[$about:meta])* $any:ident, $each:ident: $($name:ident in $file:ident,)+) => {
-        $(mod $file; pub use $file::$name;)+
+    ($d:tt $(#[$about:meta])* $any:ident, $each:ident:
+     $($(#[$when:meta])? $name:ident in $file:ident,)+) => {
+        $($(#[$when])? mod $file; $(#[$when])? pub use $file::$name;)+
 
         $(#[$about])*
         #[derive(Debug, Clone, Copy)]
         pub enum $any<S> {
-            $(#[doc = concat!("See [`", stringify!($name), "`].")] $name($name<S>),)+
+            $($(#[$when])? #[doc = concat!("See [`", stringify!($name), "`].")] $name($name<S>),)+
         }
 
         /// Every kind, with its keys.
-        pub const KINDS: &[&$crate::parameter::Kind] = &[$(&$file::KIND,)+];
+        pub const KINDS: &[&$crate::parameter::Kind] = &[$($(#[$when])? &$file::KIND,)+];
 
         impl<S: Scalar> $any<S> {
             /// The part that these values describe, where it sits; `None` for a kind of another
             /// family.
             pub fn new(values: &Values, ends: &Ends<S>) -> Option<Self> {
-                $(if values.is($file::KIND.word) {
+                $($(#[$when])? if values.is($file::KIND.word) {
                     return Some($any::$name($name::new(values, ends)));
                 })+
                 None
@@ -236,7 +238,7 @@ macro_rules! kinds {
 
         macro_rules! $each {
             ($d any:expr, $d part:ident => $d what:expr) => {
-                match $d any { $($any::$name($d part) => $d what,)+ }
+                match $d any { $($(#[$when])? $any::$name($d part) => $d what,)+ }
             };
         }
     };

@@ -347,6 +347,15 @@ fn the_example_of_every_kind_has_its_keys() {
 }
 
 #[test]
+fn the_examples_of_extending_are_the_files_that_are_compiled() {
+    let text = read("docs/extending.md");
+    let files = ["joint", "load", "course", "contact/damping"];
+    for file in files.map(|room| format!("src/{room}/scratch.rs")) {
+        assert!(text.contains(&format!("`{file}`:\n\n```rust\n{}```", read(&file))), "{file}");
+    }
+}
+
+#[test]
 fn the_tables_of_keys_are_those_that_the_program_prints() {
     let printed = |arguments: &[&str]| {
         said_by(Command::new(env!("CARGO_BIN_EXE_freeplay")).arg("schema").args(arguments))

@@ -70,7 +70,7 @@ fn clearance(keys: &mut TableReader) -> ClearanceDescription {
 }
 
 fn normal(keys: &mut TableReader) -> NormalDescription {
-    let law = keys.choice("law", &Damping::ALL, None);
+    let law = keys.choice("law", Damping::ALL, None);
     let stiffness = keys.number_or_choice(
         "stiffness",
         "N/mⁿ",

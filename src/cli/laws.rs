@@ -34,7 +34,7 @@ pub(super) fn laws(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(wrong) = arguments.restitution.iter().find(|e| !(**e > 0.0 && **e <= 1.0)) {
         return Err(Failure::input(Wrong::Restitution(*wrong)));
     }
-    let laws = Damping::ALL.into_iter();
+    let laws = Damping::ALL.iter().copied();
     let laws: Vec<Damping> = match &arguments.name {
         None => laws.map(|(_, law)| law).collect(),
         Some(name) => laws.filter(|(word, _)| word == name).map(|(_, law)| law).collect(),

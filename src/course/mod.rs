@@ -11,6 +11,8 @@ kinds! { $
     Speed in speed,
     Ramp in ramp,
     Harmonic in harmonic,
+    #[cfg(test)]
+    Scratch in scratch,
 }
 
 /// The kind that a plain number stands for.

@@ -29,6 +29,8 @@ kinds! { $
     Fixed in fixed,
     Distance in distance,
     Gear in gear,
+    #[cfg(test)]
+    Scratch in scratch,
 }
 
 /// The words of the kinds that a drive may sit on, and of the one that may have clearance.

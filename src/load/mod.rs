@@ -17,6 +17,8 @@ kinds! { $
     Torque in torque,
     Spring in spring,
     TorsionSpring in torsion_spring,
+    #[cfg(test)]
+    Scratch in scratch,
 }
 
 /// The word of the load that is a field of gravity.

@@ -15,6 +15,8 @@ pub(super) struct Drawing {
     /// Points of each body, in its frame.
     bodies: Vec<Vec<Point>>,
     joints: Vec<DrawnJoint>,
+    /// Springs, by the points between which they are.
+    springs: Vec<[PointOnBody; 2]>,
     /// Acceleration of free fall (m/s²), fixed frame.
     gravity: Option<[f64; 2]>,
 }
@@ -32,6 +34,10 @@ struct Point {
 struct DrawnJoint {
     /// Bearing and journal, or the two points of an ideal joint.
     between: [PointOnBody; 2],
+    /// Its kind, as in case files.
+    kind: &'static str,
+    /// Direction of the line that its second point slides on, in the frame of the first body.
+    axis: Option<[f64; 2]>,
     /// Whether a drive sits on it.
     driven: bool,
     clearance: Option<DrawnClearance>,
@@ -67,6 +73,7 @@ impl Drawing {
             ground: points(&description.ground),
             bodies: description.bodies.iter().map(|body| points(&body.points)).collect(),
             joints: joints_of(description)?,
+            springs: springs_of(description)?,
             gravity: gravity.reduce(|[x, y], [also_x, also_y]| [x + also_x, y + also_y]),
         })
     }
@@ -105,6 +112,8 @@ fn joints_of(description: &Description) -> Option<Vec<DrawnJoint>> {
         let [first, second] = joint.between();
         Some(DrawnJoint {
             between: [point_on_body(description, first)?, point_on_body(description, second)?],
+            kind: joint.part.kind().word,
+            axis: joint.part.get("axis").map(|_| joint.part.vector("axis")),
             driven: description.drives.iter().any(|drive| drive.joint == joint.name),
             clearance: joint.clearance.as_ref().map(|clearance| DrawnClearance {
                 bearing_radius: clearance.bearing_radius.to_f64(),
@@ -113,6 +122,15 @@ fn joints_of(description: &Description) -> Option<Vec<DrawnJoint>> {
         })
     };
     description.joints.iter().map(joint).collect()
+}
+
+fn springs_of(description: &Description) -> Option<Vec<[PointOnBody; 2]>> {
+    let springs = description.loads.iter().filter(|load| load.part.is("spring"));
+    let ends = springs.map(|spring| spring.part.pair("between"));
+    ends.map(|[first, second]| {
+        Some([point_on_body(description, first)?, point_on_body(description, second)?])
+    })
+    .collect()
 }
 
 /// A point written `body.point`; of a body alone its first.

@@ -55,9 +55,14 @@ function placesOf(run, factor) {
   return { ground, bodies, centres, place };
 }
 
+/** Where a joint's sign and force are drawn: on its bearing, or where its second body has hold of the first. */
+function seat({ kind, between }) {
+  return kind === "revolute" ? between[0] : between[1];
+}
+
 /** Centre of a joint (m) as drawn at the time sought. */
 export function jointPlace(run, joint, factor) {
-  return placesOf(run, factor).place(run.drawing.joints[joint].between[0]);
+  return placesOf(run, factor).place(seat(run.drawing.joints[joint]));
 }
 
 /** Radii of bearing and journal on the screen (px); what is between them is the clearance. */
@@ -77,15 +82,19 @@ export function drawMechanism(pen, run, view, look) {
   drawGround(pen, run, places, at, look.symbol);
   for (let body = 0; body < run.bodies.length; body++) drawBody(pen, outline(places, body).map(at), look);
   for (const centre of places.centres) drawCentre(pen, at(centre));
+  for (const ends of run.drawing.springs) drawSpring(pen, ...ends.map((end) => at(places.place(end))), look.symbol);
   run.drawing.joints.forEach((joint, index) => {
-    const centre = at(places.place(joint.between[0]));
+    const centre = at(places.place(seat(joint)));
+    const colour = seriesColour(look.colourOf(run.joints[index]));
+    if (joint.kind === "distance") drawLink(pen, ...joint.between.map((end) => at(places.place(end))), colour);
+    if (joint.axis) drawSlide(pen, run, joint, at(places.place(joint.between[0])), centre, colour, look.symbol);
     if (joint.clearance) drawBearing(pen, run, joint, index, centre, at(places.place(joint.between[1])), view, look);
-    else drawPin(pen, centre, seriesColour(look.colourOf(run.joints[index])));
+    else drawPin(pen, centre, colour);
     if (joint.driven) drawDrive(pen, centre, view, joint, look);
   });
   const cuts = [];
   run.drawing.joints.forEach((joint, index) => {
-    if (look.forces) drawForce(pen, run, joint, index, at(places.place(joint.between[0])), view, look, cuts);
+    if (look.forces) drawForce(pen, run, joint, index, at(places.place(seat(joint))), view, look, cuts);
   });
   const taken = [...look.taken, ...drawNames(pen, run, places, at, view, look)];
   for (const { cut, colour, alpha, force } of cuts) {
@@ -93,6 +102,62 @@ export function drawMechanism(pen, run, view, look) {
     labelBeside(pen, look.box, cut, inUnit(force, prefixed("N", force), 3), { colour, weight: "600" }, taken);
     pen.globalAlpha = 1;
   }
+}
+
+/** A link without mass, between two points. */
+function drawLink(pen, from, to, colour) {
+  pen.strokeStyle = colour;
+  pen.lineWidth = 2;
+  pen.beginPath();
+  pen.moveTo(...from);
+  pen.lineTo(...to);
+  pen.stroke();
+}
+
+/** The line that a point slides on, and the block or pin on it. */
+function drawSlide(pen, run, joint, from, centre, colour, s) {
+  const { body } = joint.between[0];
+  const turned = body === null ? 0 : run.at(run.column("angle", run.bodies[body]));
+  const [x, y] = joint.axis;
+  const angle = -(Math.atan2(y, x) + turned);
+  const along = [Math.cos(angle), Math.sin(angle)];
+  const travel = (centre[0] - from[0]) * along[0] + (centre[1] - from[1]) * along[1];
+  const reach = 34 * s;
+  pen.strokeStyle = theme().muted;
+  pen.lineWidth = 1.2;
+  pen.setLineDash([6, 4]);
+  pen.beginPath();
+  for (const end of [Math.min(0, travel) - reach, Math.max(0, travel) + reach]) pen.lineTo(from[0] + end * along[0], from[1] + end * along[1]);
+  pen.stroke();
+  pen.setLineDash([]);
+  if (joint.kind !== "prismatic") return;
+  pen.save();
+  pen.translate(...centre);
+  pen.rotate(angle);
+  pen.strokeStyle = colour;
+  pen.lineWidth = 1.6;
+  pen.strokeRect(-17 * s, -10 * s, 34 * s, 20 * s);
+  pen.restore();
+}
+
+/** A spring: a zigzag between two points. */
+function drawSpring(pen, from, to, s) {
+  const [dx, dy] = [to[0] - from[0], to[1] - from[1]];
+  const length = Math.hypot(dx, dy);
+  if (!(length > 0)) return;
+  const teeth = 12;
+  const wide = Math.min(7 * s, length / 4);
+  pen.strokeStyle = theme().muted;
+  pen.lineWidth = 1.4;
+  pen.beginPath();
+  pen.moveTo(...from);
+  for (let k = 0; k < teeth; k++) {
+    const part = 0.15 + (0.7 * (k + 0.5)) / teeth;
+    const off = (k % 2 ? wide : -wide) / length;
+    pen.lineTo(from[0] + part * dx - off * dy, from[1] + part * dy + off * dx);
+  }
+  pen.lineTo(...to);
+  pen.stroke();
 }
 
 /** The mechanism of another run as thin dashed lines. */
@@ -287,11 +352,11 @@ function drawNames(pen, run, places, at, view, look) {
     take({ left: x + width / 2, right: x - width / 2, center: x }[how.align ?? "left"], y, width / 2 + 2, 9);
   };
   run.drawing.joints.forEach((joint, index) => {
-    const [x, y] = at(places.place(joint.between[0]));
+    const [x, y] = at(places.place(seat(joint)));
     const hole = joint.clearance ? circles(joint.clearance, look.factor, view.scale).bearing + look.wall : 6;
     take(x, y, hole, hole);
     if (!look.names) return;
-    const grounded = joint.between[0].body === null;
+    const grounded = seat(joint).body === null;
     const how = { size: 14, colour: seriesColour(look.colourOf(run.joints[index])), weight: "600" };
     if (grounded) name(run.joints[index], x - Math.max(20 * look.symbol, hole) - 6, y + 17 * look.symbol, { ...how, align: "right" });
     else name(run.joints[index], x + 0.75 * hole + 5, y - 0.75 * hole - 9, how);

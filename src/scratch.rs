@@ -1,0 +1,134 @@
+//! One kind of everything of one's own, as docs/extending.md adds them: one file and one line each, and
+//! they run on both engines.
+
+use crate::case::{Case, Changes};
+use crate::contact::rebound;
+use crate::run::{Progress, Trajectory};
+use crate::simulate::Simulation;
+use std::ops::ControlFlow;
+use std::path::Path;
+
+const ENGINES: [&str; 2] = ["solver.engine=explicit", "solver.engine=ida"];
+
+fn run(text: &str, engine: &str) -> Trajectory {
+    let changes = Changes { set: vec![engine.parse().unwrap()], ideal: false };
+    let case = Case::from_text(Path::new("scratch.toml"), text, &changes).unwrap();
+    let mut kept = Trajectory::default();
+    let mut go_on = |_: &Progress| ControlFlow::Continue(());
+    Simulation::new(&case).unwrap().run(&mut kept, &mut go_on).1.unwrap();
+    kept
+}
+
+const BODY: &str = r#"
+[ground]
+points = { O = [0.0, 0.0] }
+[bodies.rod]
+mass = 0.5
+inertia = 0.015
+points = { O = [-0.3, 0.0], C = [0.0, 0.0], E = [0.3, 0.0] }
+[run]
+duration = 0.5
+sample_interval = 0.05
+[solver]
+absolute_tolerance = "scaled"
+"#;
+
+#[test]
+fn a_joint_of_one_s_own_holds() {
+    let text = format!(
+        r#"{BODY}
+        [joints.p]
+        kind = "parallel"
+        between = ["ground.O", "rod.C"]
+        angle = 0.3
+        [loads.m]
+        kind = "torque"
+        body = "rod"
+        torque = 2.0
+        [start]
+        rod = {{ x = 0.0, y = 0.0, angle = 0.3, velocity_x = 1.0, fixed = true }}"#
+    );
+    for engine in ENGINES {
+        for sample in run(&text, engine).samples {
+            assert!((sample.bodies[0].angle - 0.3).abs() < 1e-12);
+            assert!((sample.bodies[0].position[0] - sample.time).abs() < 1e-10);
+            assert!((sample.joints[0].moment + 2.0).abs() < 1e-10, "{:?}", sample.joints[0]);
+        }
+    }
+}
+
+#[test]
+fn a_load_of_one_s_own_slows_a_body_down() {
+    let text = format!(
+        r#"{BODY}
+        [loads.air]
+        kind = "drag"
+        at = "rod.C"
+        damping = 0.2
+        [start]
+        rod = {{ x = 0.0, y = 0.0, velocity_x = 1.0, fixed = true }}"#
+    );
+    for engine in ENGINES {
+        for sample in run(&text, engine).samples {
+            let speed = (-0.4 * sample.time).exp();
+            assert!((sample.bodies[0].velocity[0] - speed).abs() < 1e-9);
+            let lost = 0.25 * (1.0 - speed * speed);
+            assert!((sample.energy.dissipated - lost).abs() < 1e-9);
+            assert!(sample.energy.residual.abs() < 1e-9);
+        }
+    }
+}
+
+#[test]
+fn a_course_of_one_s_own_drives() {
+    let text = format!(
+        r#"{BODY}
+        [joints.O]
+        kind = "revolute"
+        between = ["ground.O", "rod.O"]
+        [drives.d]
+        kind = "run-up"
+        joint = "O"
+        acceleration = 40.0"#
+    );
+    for engine in ENGINES {
+        for sample in run(&text, engine).samples {
+            assert!((sample.bodies[0].angle - 20.0 * sample.time * sample.time).abs() < 1e-12);
+            assert!((sample.drive_torques[0] - 40.0 * (0.015 + 0.5 * 0.09)).abs() < 1e-11);
+        }
+    }
+}
+
+#[test]
+fn a_damping_law_of_one_s_own_rebounds_as_its_weight_says() {
+    let text = r#"
+        [ground]
+        points = { O = [0.0, 0.0] }
+        [bodies.ball]
+        mass = 0.05
+        inertia = 2e-6
+        points = { C = [0.0, 0.0] }
+        [joints.O]
+        kind = "revolute"
+        between = ["ground.O", "ball.C"]
+        [joints.O.clearance]
+        bearing_radius = 0.01
+        radial = 0.001
+        normal = { law = "straight", restitution = 0.6, stiffness = 1e10 }
+        [start]
+        ball = { x = 0.0, y = 0.0, velocity_x = 1.0, fixed = true }
+        [run]
+        duration = 0.02
+        sample_interval = 0.02
+        [solver]
+        absolute_tolerance = "scaled"
+    "#;
+    for engine in ENGINES {
+        let contacts = run(text, engine).contacts;
+        assert!(contacts.len() >= 4, "{}", contacts.len());
+        for pair in contacts.windows(2) {
+            let ratio = pair[1].impact_rate / pair[0].impact_rate;
+            assert!((ratio - rebound(0.4)).abs() < 1e-8, "{ratio}");
+        }
+    }
+}
