@@ -5,8 +5,11 @@ use crate::advice::{self, Note, Touch, Turn};
 use crate::case::{AbsoluteTolerance, Case, EngineName, NormName, Precision, SolverPlan};
 use crate::contact;
 use crate::dae::System;
+use crate::joint::REVOLUTE;
 use crate::mechanism::{Mechanism, Observation};
+use crate::model::Description;
 use crate::model::{KeyPath, one_line};
+use crate::parameter::Values;
 use crate::post::table;
 use crate::simulate::Simulation;
 use serde_json::{Map, Value, json};
@@ -55,7 +58,7 @@ impl Display for Checked<'_> {
         let title = one_line(&self.case.title);
         let colon = if title.is_empty() { "" } else { ": " };
         writeln!(f, "{}{colon}{title}", self.case.name)?;
-        mechanism_lines(mechanism, f)?;
+        mechanism_lines(&self.case.description, mechanism, f)?;
         turn_line(&self.turn, f)?;
         self.clearance_lines(f)?;
         self.start_lines(f)?;
@@ -165,6 +168,7 @@ impl Checked<'_> {
         let clearances = (0..names.clearances.len())
             .map(|k| (names.clearances[k].clone(), self.clearance_json(k)));
         let driven = (0..names.bodies.len()).filter(|body| mechanism.is_driven(*body));
+        let description = &self.case.description;
         let defaults = self.case.defaults.iter();
         let defaults = defaults.map(|default| (default.key.to_string(), json!(default.value)));
         let schedule = self.simulation.schedule();
@@ -176,6 +180,8 @@ impl Checked<'_> {
             "bodies": names.bodies,
             "driven": driven.map(|body| &names.bodies[body]).collect::<Vec<_>>(),
             "joints": names.joints,
+            "joint_kinds": kinds_of(description.joints.iter().map(|j| (&j.name, &j.part))),
+            "loads": kinds_of(description.loads.iter().map(|load| (&load.name, &load.part))),
             "drives": names.drives,
             "freedoms": mechanism.freedoms(),
             "coordinates": mechanism.coordinates(),
@@ -328,7 +334,11 @@ fn tidy(value: f64) -> f64 {
     format!("{value:.12e}").parse().unwrap_or(value)
 }
 
-fn mechanism_lines(mechanism: &Mechanism<f64>, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+fn mechanism_lines(
+    description: &Description,
+    mechanism: &Mechanism<f64>,
+    f: &mut fmt::Formatter<'_>,
+) -> fmt::Result {
     let names = mechanism.model().names();
     let driven = (0..names.bodies.len()).filter(|body| mechanism.is_driven(*body));
     let driven: Vec<&str> = driven.map(|body| names.bodies[body].as_str()).collect();
@@ -336,13 +346,24 @@ fn mechanism_lines(mechanism: &Mechanism<f64>, f: &mut fmt::Formatter<'_>) -> fm
     if !driven.is_empty() {
         writeln!(f, "  driven       {}: prescribed by the drives, no unknowns", driven.join(", "))?;
     }
-    let ideal = names.joints.iter().filter(|joint| !names.clearances.contains(joint));
-    let ideal: Vec<&str> = ideal.map(String::as_str).collect();
+    let of_kind = |name: &str, kind: &str| format!("{name} ({kind})");
+    let ideal = description.joints.iter().filter(|joint| joint.clearance.is_none());
+    let ideal: Vec<String> = ideal
+        .map(|joint| match joint.part.kind().word {
+            REVOLUTE => joint.name.clone(),
+            kind => of_kind(&joint.name, kind),
+        })
+        .collect();
     writeln!(
         f,
         "  ideal joints {}",
         if ideal.is_empty() { "none".into() } else { ideal.join(", ") }
     )?;
+    let loads = description.loads.iter();
+    let loads: Vec<String> = loads.map(|load| of_kind(&load.name, load.part.kind().word)).collect();
+    if !loads.is_empty() {
+        writeln!(f, "  loads        {}", loads.join(", "))?;
+    }
     let (coordinates, rows) = (mechanism.coordinates(), mechanism.multipliers());
     let freedoms = mechanism.freedoms();
     writeln!(
@@ -350,6 +371,12 @@ fn mechanism_lines(mechanism: &Mechanism<f64>, f: &mut fmt::Formatter<'_>) -> fm
         "  freedoms     {freedoms}: {coordinates} coordinates, {rows} constraints{}",
         if freedoms == 0 { "; assembled at each time, nothing is integrated" } else { "" }
     )
+}
+
+/// The kind of each part, by its name.
+fn kinds_of<'a>(parts: impl Iterator<Item = (&'a String, &'a Values)>) -> Value {
+    let kinds = parts.map(|(name, part)| (name.clone(), json!(part.kind().word)));
+    Value::Object(kinds.collect())
 }
 
 /// What a clearance is, without where it is.

@@ -23,6 +23,8 @@ pub struct Arguments {
 enum Kind {
     /// Crank-rocker, clearance between crank and coupler.
     FourBar,
+    /// Slider-crank, clearance at the wrist pin.
+    SliderCrank,
     /// Watt's six-bar, clearance and friction in two joints.
     SixBar,
     /// A rod on a loose pin.
@@ -38,6 +40,7 @@ impl Kind {
     fn file(self) -> (&'static str, &'static str) {
         match self {
             Kind::FourBar => ("four-bar.toml", include_str!("new/four-bar.toml")),
+            Kind::SliderCrank => ("slider-crank.toml", include_str!("new/slider-crank.toml")),
             Kind::SixBar => ("six-bar.toml", include_str!("new/six-bar.toml")),
             Kind::Pendulum => ("pendulum.toml", include_str!("new/pendulum.toml")),
             Kind::DoublePendulum => {

@@ -118,6 +118,11 @@ impl<S: Scalar> Course<S> {
         each_course!(self, law => law.all())
     }
 
+    /// Angular frequency (rad/s) of a course that swings; none of one that goes evenly.
+    pub fn pace(&self) -> Option<f64> {
+        self.accelerates().then(|| self.period().map(|period| std::f64::consts::TAU / period))?
+    }
+
     /// A time (s) at which a derivative of f jumps.
     pub fn corner(&self) -> Option<S> {
         each_course!(self, law => law.corner())

@@ -3,6 +3,7 @@
 
 use super::Mechanism;
 use super::layout::{Layout, Origin, Role, Row};
+use crate::course::Course;
 use crate::model::Model;
 use crate::plane::Vector;
 use crate::scalar::Scalar;
@@ -114,6 +115,21 @@ pub(super) fn mobilities<S: Scalar>(model: &Model<S>, layout: &Layout<S>) -> Vec
     pairs.map(|pair| of(pair.i, pair.s_i) + of(pair.j, pair.s_j)).collect()
 }
 
+/// Square of the fastest pace (rad²/s²) that loads and courses of time give the bodies.
+pub(super) fn given_pace<S: Scalar>(model: &Model<S>, layout: &Layout<S>) -> f64 {
+    let paces = model.loads().iter().flat_map(|load| {
+        let bodies = load.bodies().into_iter().flatten();
+        let free = bodies.filter(|body| matches!(layout.roles[*body], Role::Free(_)));
+        let swings = free.map(|body| {
+            let [mass, inertia] = [model.masses(), model.inertias()].map(|of| of[body].to_f64());
+            load.pace(mass, (inertia / mass).sqrt())
+        });
+        swings.chain(load.course().and_then(Course::pace))
+    });
+    let drives = model.drives().iter().filter_map(|drive| drive.course.pace());
+    paces.chain(drives).fold(0.0, f64::max).powi(2)
+}
+
 impl<S: Scalar> Mechanism<S> {
     /// What [`Mechanism::measure`] tells.
     pub fn measures(&self) -> Measures {
@@ -180,6 +196,6 @@ impl<S: Scalar> Mechanism<S> {
             let square = rate * rate;
             if square > fastest { square } else { fastest }
         });
-        swing + 4.0 * fastest
+        swing + 4.0 * (fastest + self.given_pace)
     }
 }

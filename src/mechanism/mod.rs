@@ -54,6 +54,8 @@ pub struct Mechanism<S> {
     force_sources: Vec<ForceSource>,
     /// Mobility of each clearance (1/kg).
     mobilities: Vec<f64>,
+    /// Square of the fastest pace (rad²/s²) that loads and courses give.
+    given_pace: f64,
     now: Evaluation<S>,
 }
 
@@ -161,6 +163,7 @@ impl<S: Scalar> Mechanism<S> {
             length: 1.0,
             force_sources: measure::force_sources(&model, &layout),
             mobilities: measure::mobilities(&model, &layout),
+            given_pace: measure::given_pace(&model, &layout),
             model,
             layout,
         };
