@@ -225,15 +225,13 @@ fn schema_at<'a>(schema: &'a Value, keys: &[&str]) -> Option<&'a Value> {
 }
 
 fn schema_below<'a>(whole: &'a Value, at: &'a Value, keys: &[&str]) -> Option<&'a Value> {
-    let Some((key, rest)) = keys.split_first() else { return Some(schema_in(whole, at)) };
     let at = schema_in(whole, at);
+    let Some((key, rest)) = keys.split_first() else { return Some(at) };
+    let next = at["properties"].get(key).or_else(|| at.get("additionalProperties"));
+    let below = next.filter(|next| !next.is_boolean());
+    let below = below.and_then(|next| schema_below(whole, next, rest));
     let alternatives = at["oneOf"].as_array().map_or(&[][..], Vec::as_slice);
-    let alternatives = alternatives.iter().map(|at| schema_in(whole, at)).chain([at]);
-    let mut found = alternatives.filter_map(|at| {
-        let next = at["properties"].get(key).or_else(|| at.get("additionalProperties"));
-        schema_below(whole, next.filter(|next| !next.is_boolean())?, rest)
-    });
-    found.next()
+    below.or_else(|| alternatives.iter().find_map(|at| schema_below(whole, at, keys)))
 }
 
 /// What a reference leads to.

@@ -44,6 +44,9 @@ const COARSE: f64 = 1.0 / 67_108_864.0;
 const SLOW: f64 = 0.05;
 /// Steps that are not near by then want second derivatives too.
 const LATE: usize = 20;
+/// Steps that are not near by then move what moves least, whatever its mass: light bodies that turn
+/// far to little effect lead nowhere.
+const VERY_LATE: usize = 60;
 /// A condition seen by less than this in units of rounding, for each unknown, is not seen.
 const BLIND: f64 = 64.0;
 /// Passes that a linear problem is given to come to rest.
@@ -273,9 +276,14 @@ impl<S: Scalar> Mechanism<S> {
         let scales = self.column_scales();
         let near = NEAR * self.length;
         let mut solved = Solved { left: f64::INFINITY, condition: 1.0, at_rest: false };
-        let (mut slow, mut following) = (false, 0);
+        let (mut slow, mut near_by, mut following) = (false, false, 0);
         for step in 0..MOST_STEPS {
             let mut conditions = self.position_conditions(q, fixed);
+            if step >= VERY_LATE && !near_by {
+                for (k, (row, _)) in conditions.near.iter_mut().enumerate() {
+                    row[k] = S::one();
+                }
+            }
             if slow {
                 conditions.bend = Some(self.bend(&conditions));
             }
@@ -292,6 +300,7 @@ impl<S: Scalar> Mechanism<S> {
             if whole > near {
                 self.coarsen(q, fixed);
             }
+            near_by |= whole <= near;
             let moved = whole * fraction.to_f64();
             let rounding = S::EPSILON * q.iter().fold(self.length, |l, x| l.max(x.abs().to_f64()));
             let no_gain = moved > 0.9 * solved.left && moved <= 1e3 * rounding * change.condition;

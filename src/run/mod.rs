@@ -198,6 +198,7 @@ where
     let system = engine.system();
     let (clearances, length) = (system.modes().len(), system.length());
     let speed = system.scales().1.first().copied().unwrap_or(0.0);
+    let mass = system.model().masses().iter().map(|mass| mass.to_f64()).sum();
     let names = system.model().names().clearances.clone();
     let deepest = |c: &Clearance<S>| c.maximum_penetration * c.journal_radius.to_f64();
     let frictions = system.model().clearances().iter();
@@ -219,7 +220,7 @@ where
         next_time: None,
         marks: Vec::new(),
         window: Window::new(clearances),
-        witness: Witness::new(names, frictions, [length, speed], tolerance),
+        witness: Witness::new(names, frictions, [length, speed, mass], tolerance),
         contacts: Contacts::default(),
         peaks: Vec::new(),
         tracker,

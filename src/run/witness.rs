@@ -120,12 +120,12 @@ pub(super) struct Witness {
 }
 
 impl Witness {
-    /// A witness of a mechanism of this length (m) and speed (m/s), solved to this tolerance;
-    /// friction by clearance.
+    /// A witness of a mechanism of this length (m), speed (m/s) and mass (kg), solved to this
+    /// tolerance; friction by clearance.
     pub fn new(
         names: Vec<String>,
         frictions: Vec<Option<Ramp>>,
-        [length, speed]: [f64; 2],
+        [length, speed, mass]: [f64; 3],
         tolerance: f64,
     ) -> Self {
         let errors = ERRORS * tolerance;
@@ -135,7 +135,8 @@ impl Witness {
             depth: ROUNDING + errors * length,
             rate: errors * speed,
             slip: errors.clamp(SLIP[0], SLIP[1]) * speed,
-            energy: 0.0,
+            // of a mechanism at rest there is nothing but rounding
+            energy: errors * mass * speed * speed,
         }
     }
 
@@ -207,7 +208,7 @@ mod tests {
 
     fn witness() -> Witness {
         let ramp = Ramp { coefficient: 0.1, v0: 1e-3, v1: 1e-2 };
-        Witness::new(vec!["A".into()], vec![Some(ramp)], [0.1, 1.0], 1e-12)
+        Witness::new(vec!["A".into()], vec![Some(ramp)], [0.1, 1.0, 1.0], 1e-12)
     }
 
     fn seen(penetration: f64, in_contact: bool) -> Observation {
