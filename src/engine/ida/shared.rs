@@ -102,7 +102,7 @@ impl<Y: Dae> Shared<Y> {
         self.calls.jacobians += 1;
         let mut view = DMatrixViewMut::from_slice(columns, y.len(), y.len());
         self.system.jacobian(time, y, yp, cj, &mut view)?;
-        self.weights.know_rounding(y, cj, columns);
+        self.weights.know_rounding(time, y, cj, columns);
         Ok(())
     }
 }

@@ -13,11 +13,12 @@
 //! jump by more than that at the begin of a contact.)
 //!
 //! No tolerance can mean less than rounding makes. A coordinate is right to ε|q|, ε the rounding of
-//! doubles; through the forces (∂v̇/∂q, which is c/m times larger in a contact of stiffness c) and
+//! doubles, and no better than what moves by itself in the rounding of the time, ½ ulp(t) times its
+//! speed: eight seconds on that is the larger part. Through the forces (∂v̇/∂q, which is c/m times larger in a contact of stiffness c) and
 //! through the multipliers a step of length 1/c_j makes of it an error of
 //!
 //! ```text
-//! v:  ε (Σ |∂v̇/∂q| |q| + Σ |∂v̇/∂λ| |λ|) / c_j      but at most ε |q| c_j
+//! v:  (Σ |∂v̇/∂q| ε|q| + Σ |∂v̇/∂λ| ε|λ|) / c_j      but at most ε|q| c_j
 //! q:  that of v / c_j
 //! ```
 //!
@@ -57,6 +58,8 @@ pub(super) struct Weights {
     norm: Norm,
     /// Typical sizes of q.
     sizes: Vec<f64>,
+    /// Typical sizes of v.
+    speeds: Vec<f64>,
     /// What rounding makes of q and v in a step.
     floor: Vec<f64>,
     /// How often an error below the floor was asked for.
@@ -92,7 +95,8 @@ impl Weights {
             }),
             None => {
                 let floor = vec![0.0; absolute.len()];
-                Ok(Weights { relative, absolute, norm, sizes: own, floor, floored: 0 })
+                let speeds = scales.1.to_vec();
+                Ok(Weights { relative, absolute, norm, sizes: own, speeds, floor, floored: 0 })
             }
         }
     }
@@ -107,9 +111,9 @@ impl Weights {
         self.floor.fill(0.0);
     }
 
-    /// Takes in what rounding makes of a step with c_j (1/s) near y = (q, v, λ), from the Jacobian
-    /// there, column by column.
-    pub(super) fn know_rounding(&mut self, y: &[f64], cj: f64, columns: &[f64]) {
+    /// Takes in what rounding makes of a step with c_j (1/s) near the time t (s) and y = (q, v, λ),
+    /// from the Jacobian there, column by column.
+    pub(super) fn know_rounding(&mut self, t: f64, y: &[f64], cj: f64, columns: &[f64]) {
         let (size, n) = (y.len(), self.sizes.len());
         let (floor_q, floor_v) = self.floor.split_at_mut(n);
         floor_v.fill(0.0);
@@ -117,16 +121,20 @@ impl Weights {
             let entries = &columns[size * column + n..size * column + 2 * n];
             floor_v.iter_mut().zip(entries).for_each(|(v, entry)| *v += rounding * entry.abs());
         };
-        let rounding = |y: f64, size: f64| f64::EPSILON * y.abs().max(size);
-        for (j, typical) in self.sizes.iter().enumerate() {
-            add(j, rounding(y[j], *typical));
+        let late = 0.5 * (t.abs().next_up() - t.abs());
+        let rounding = |j: usize| {
+            let own = f64::EPSILON * y[j].abs().max(self.sizes[j]);
+            own.max(late * self.speeds[j])
+        };
+        for j in 0..n {
+            add(j, rounding(j));
         }
         for (k, lambda) in y.iter().enumerate().skip(2 * n) {
-            add(k, rounding(*lambda, 0.0));
+            add(k, f64::EPSILON * lambda.abs());
         }
-        for (((q, v), y), typical) in floor_q.iter_mut().zip(floor_v).zip(y).zip(&self.sizes) {
+        for (j, (q, v)) in floor_q.iter_mut().zip(floor_v).enumerate() {
             // a step that is long for a stiff contact moves no further than rounding moves q
-            *q = (*v / cj / cj).min(rounding(*y, *typical));
+            *q = (*v / cj / cj).min(rounding(j));
             *v = *q * cj;
         }
     }
@@ -185,19 +193,24 @@ mod tests {
             weights.fill(&y, &mut w);
             assert!(w[1] > 1e19 && weights.floored() == 0);
             // Column by column: c_j, stiffness; −1, c_j.
-            weights.know_rounding(&y, cj, &[cj, stiffness, -1.0, cj]);
+            weights.know_rounding(0.0, &y, cj, &[cj, stiffness, -1.0, cj]);
             weights.fill(&y, &mut w);
             let expected = f64::EPSILON * 3.0 * stiffness / cj;
             assert!((w[1] * expected - 1.0).abs() < 1e-12, "{w:?}");
             assert!((w[0] * 3e-12 - 1.0).abs() < 1e-7, "q has no need of it: {w:?}");
             assert_eq!(weights.floored(), 1);
             // Steps longer than the contact vibrates move the coordinate by its rounding.
-            weights.know_rounding(&y, 1e3, &[1e3, stiffness, -1.0, 1e3]);
+            weights.know_rounding(0.0, &y, 1e3, &[1e3, stiffness, -1.0, 1e3]);
             weights.fill(&y, &mut w);
             assert!((w[1] * f64::EPSILON * 3.0 * 1e3 - 1.0).abs() < 1e-12, "{w:?}");
+            // Late in a run the rounding of the time moves it by more: 300 · ½ ulp(8.4).
+            let late = 300.0 * f64::EPSILON * 4.0;
+            weights.know_rounding(8.4, &y, cj, &[cj, stiffness, -1.0, cj]);
+            weights.fill(&y, &mut w);
+            assert!((w[1] * late * stiffness / cj - 1.0).abs() < 1e-12, "{w:?}");
             weights.forget_rounding();
             weights.fill(&y, &mut w);
-            assert!(w[1] > 1e19 && weights.floored() == 2);
+            assert!(w[1] > 1e19 && weights.floored() == 3);
         }
     }
 
