@@ -16,12 +16,14 @@ const TOLERANCE: f64 = 1e-12;
 /// A law, its restitution, its damping weight a, and its rebound ratio where it is known.
 type Law = (&'static str, f64, f64, Option<f64>);
 
-const LAWS: [Law; 5] = [
+const LAWS: [Law; 7] = [
     ("hertz", 1.0, 0.0, Some(1.0)),
     ("lankarani-nikravesh", 0.9, 0.75 * 0.19, Some(0.913_176_677_805_581)),
     ("lankarani-nikravesh", 0.5, 0.75 * 0.75, Some(0.725_241_114_010_197)),
     ("lankarani-nikravesh", 0.7, 0.75 * 0.51, None),
     ("lankarani-nikravesh", 0.99, 0.75 * 0.0199, None),
+    ("flores", 0.9, 8.0 * 0.1 / 4.5, None),
+    ("flores", 0.8, 8.0 * 0.2 / 4.0, None),
 ];
 
 /// To and fro at a speed (m/s) with a law, until some impacts have been.

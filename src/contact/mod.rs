@@ -9,6 +9,7 @@
 //! rebounds at e times its speed, with e the root of `a (1 + e) = ln((1 + a)/(1 − a e))`, whatever
 //! K, m, n and the speed.
 
+pub mod flores;
 pub mod hertz;
 pub mod lankarani_nikravesh;
 pub mod stiffness;
@@ -296,6 +297,16 @@ mod tests {
             assert!((found - exact).abs() < 5e-7, "{restitution}: {found}");
         }
         assert_eq!(rebound(hertz::damping_weight()), 1.0);
+    }
+
+    #[test]
+    fn flores_rebounds_slower_than_its_restitution() {
+        // found by integrating the impact
+        for (restitution, exact) in [(0.9, 0.893921), (0.5, 0.470445), (0.3, 0.256208)] {
+            let found = rebound(flores::damping_weight(restitution));
+            assert!((found - exact).abs() < 5e-7, "{restitution}: {found}");
+        }
+        assert_eq!(rebound(flores::damping_weight(1.0)), 1.0);
     }
 
     #[test]

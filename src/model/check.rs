@@ -228,7 +228,7 @@ fn of_each(constant: &Option<OfMaterials>) -> impl Iterator<Item = &Decimal> {
 fn check_restitution(complaints: &mut Complaints, key: KeyPath, normal: &NormalDescription) {
     let dissipates = match normal.law {
         NormalLawName::Hertz => false,
-        NormalLawName::LankaraniNikravesh => true,
+        NormalLawName::LankaraniNikravesh | NormalLawName::Flores => true,
     };
     let law = normal.law.name();
     match &normal.restitution {

@@ -127,13 +127,16 @@ pub enum NormalLawName {
     Hertz,
     /// `lankarani-nikravesh`: the paper's.
     LankaraniNikravesh,
+    /// `flores`: for soft contacts too.
+    Flores,
 }
 
 impl NormalLawName {
     /// Every law, with its name in case files.
-    pub const ALL: [(&'static str, NormalLawName); 2] = [
+    pub const ALL: [(&'static str, NormalLawName); 3] = [
         ("lankarani-nikravesh", NormalLawName::LankaraniNikravesh),
         ("hertz", NormalLawName::Hertz),
+        ("flores", NormalLawName::Flores),
     ];
 
     /// The name in case files.

@@ -13,7 +13,7 @@ pub use complaint::*;
 pub use description::*;
 
 use crate::clearance::Clearance;
-use crate::contact::{NormalLaw, hertz, lankarani_nikravesh, stiffness};
+use crate::contact::{NormalLaw, flores, hertz, lankarani_nikravesh, stiffness};
 use crate::friction::{Ambrosio, Dahl, Friction};
 use crate::joint::{Pair, SpeedDrive};
 use crate::load::{Gravity, Load};
@@ -307,6 +307,7 @@ fn normal_law<S: Scalar>(normal: &NormalDescription, bearing: S, journal: S) -> 
         NormalLawName::LankaraniNikravesh => {
             lankarani_nikravesh::damping_weight(number(normal.restitution.as_ref()))
         }
+        NormalLawName::Flores => flores::damping_weight(number(normal.restitution.as_ref())),
     };
     NormalLaw::new(k, normal.exponent.value(), damping_weight)
 }
