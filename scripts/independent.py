@@ -68,6 +68,7 @@ class Clearance:
         self.least = keys.get("minimum_impact_rate", 1e-3)
         self.cut = keys.get("tension", "keep") == "cut"
         friction = keys.get("friction")
+        assert friction is None or friction["law"] == "ambrosio", "no other friction is known here"
         self.mu = friction["coefficient"] if friction else 0.0
         self.v0, self.v1 = (friction["v0"], friction["v1"]) if friction else (0.0, 1.0)
         self.mode, self.impact = FLIGHT, 1.0

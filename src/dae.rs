@@ -1,13 +1,17 @@
 //! What an engine must know of a system, and what a run must know of an engine.
 //!
-//! A system is an index-1 DAE for coordinates q, velocities v and multipliers λ, with discrete
-//! modes that change only at events:
+//! A system is an index-1 DAE for coordinates q, velocities v, inner states z and multipliers λ,
+//! with discrete modes that change only at events:
 //!
 //! ```text
-//! q̇ − v                                = 0
-//! v̇ + M⁻¹ (Φ_qᵀ λ − Q(q, v, t; modes))  = 0
-//! Φ_q v̇ − γ(q, v, t)                    = 0
+//! q̇ − v                                   = 0
+//! v̇ + M⁻¹ (Φ_qᵀ λ − Q(q, v, z, t; modes))  = 0
+//! ż − f(q, v, z, t; modes)                 = 0
+//! Φ_q v̇ − γ(q, v, t)                       = 0
 //! ```
+//!
+//! Inner states are what forces remember: the deflection of the bristles of a friction law, say.
+//! Most systems have none.
 //!
 //! Between two events the modes stand still and everything here is smooth, but for the power law
 //! that [`Watch::power`] tells of.
@@ -45,6 +49,8 @@ pub struct State<'a, S> {
     pub q: &'a [S],
     /// Velocities, n of them (m/s, rad/s).
     pub v: &'a [S],
+    /// Inner states, each in its own unit. Where no forces are asked for they do not matter.
+    pub z: &'a [S],
     /// What an engine carries along; `None` has the system compute it from time and coordinates.
     pub carried: Option<Carried<'a, S>>,
 }
@@ -136,6 +142,16 @@ pub trait System<S: Scalar> {
     /// Typical sizes of the n coordinates (m, rad) and of the n velocities (m/s, rad/s).
     fn scales(&self) -> (&[f64], &[f64]);
 
+    /// Number of inner states.
+    fn inner_states(&self) -> usize {
+        0
+    }
+
+    /// Typical sizes of the inner states, each in its own unit.
+    fn inner_scales(&self) -> &[f64] {
+        &[]
+    }
+
     /// Evaluates the system at a state; the functions named `…` after this one answer for it.
     fn evaluate(&mut self, state: State<'_, S>) -> Result<(), Fault>;
 
@@ -156,6 +172,11 @@ pub trait System<S: Scalar> {
 
     /// v̇ at the state last evaluated (m/s², rad/s²).
     fn accelerations(&self) -> &[S];
+
+    /// ż at the state last evaluated, each in its own unit over s.
+    fn inner_rates(&self) -> &[S] {
+        &[]
+    }
 
     /// λ at the state last evaluated (N, N m).
     fn lambda(&self) -> &[S];
@@ -211,9 +232,9 @@ pub trait System<S: Scalar> {
     }
 }
 
-/// A system that an implicit engine can solve: y = (q, v, λ) in double precision.
+/// A system that an implicit engine can solve: y = (q, v, z, λ) in double precision.
 pub trait Dae: System<f64> {
-    /// Residual of the three rows of the module's header at (t, y, ẏ).
+    /// Residual of the four rows of the module's header at (t, y, ẏ).
     fn residual(
         &mut self,
         t: f64,
@@ -242,7 +263,7 @@ pub enum Advance {
     Event,
 }
 
-/// q, v and the integrals at one time.
+/// q, v, z and the integrals at one time.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Snapshot<S> {
     /// Time (s).
@@ -251,19 +272,27 @@ pub struct Snapshot<S> {
     pub q: Vec<S>,
     /// Velocities (m/s, rad/s).
     pub v: Vec<S>,
+    /// Inner states, each in its own unit.
+    pub z: Vec<S>,
     /// Integrals since the run began (J).
     pub integrals: Vec<S>,
 }
 
 impl<S: Scalar> Snapshot<S> {
-    /// Space for n coordinates and as many integrals as asked for, all zero.
-    pub fn new(coordinates: usize, integrals: usize) -> Self {
+    /// Space for n coordinates, and as many inner states and integrals as asked for, all zero.
+    pub fn new(coordinates: usize, inner_states: usize, integrals: usize) -> Self {
         Snapshot {
             time: S::zero(),
             q: vec![S::zero(); coordinates],
             v: vec![S::zero(); coordinates],
+            z: vec![S::zero(); inner_states],
             integrals: vec![S::zero(); integrals],
         }
+    }
+
+    /// The state, with nothing carried along.
+    pub fn state(&self) -> State<'_, S> {
+        State { time: self.time, q: &self.q, v: &self.v, z: &self.z, carried: None }
     }
 }
 

@@ -117,6 +117,9 @@ fn no_edge_of_friction_is_missed() {
     };
     assert_confirmed(FRICTION, "0.0016", &[&friction("0.3", "0.0", "0.01")]);
     assert_confirmed(FRICTION, "0.0016", &[&friction("0.05", "0.009", "0.01")]);
+    let bristles =
+        "joints.A.clearance.friction={ law = \"dahl\", coefficient = 0.1, stiffness = 1e4 }";
+    assert_confirmed(FRICTION, "0.0016", &[bristles]);
     let soft = "joints.A.clearance.normal={ law = \"lankarani-nikravesh\", restitution = 0.1, \
                 stiffness = \"hertz-printed\", young = 207e9, poisson = 0.3 }";
     assert_confirmed(FRICTION, "0.0025", &[soft, "joints.A.clearance.tension=cut"]);

@@ -8,7 +8,7 @@ use freeplay::case::{Case, Changes};
 use freeplay::cli::CommandLine;
 use freeplay::record::{DATASETS, Dimension};
 use serde_json::Value;
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use written::{python, root, said_by};
@@ -252,9 +252,16 @@ fn schema() -> Value {
 
 /// What the program says of a case with a key set to a word that it cannot know.
 fn complaint(key: &str) -> String {
+    complaint_after(&[], key)
+}
+
+/// The same with other changes made before; a key that has its value is set to that.
+fn complaint_after(before: &[&str], key: &str) -> String {
     let text = read("cases/four-bar-a-friction.toml")
         + "\n[loads.gravity]\nkind = \"gravity\"\nacceleration = [0.0, -9.81]\n";
-    let set = vec![format!("{key}=zzzzzzzz").parse().unwrap()];
+    let last = if key.contains('=') { key.to_owned() } else { format!("{key}=zzzzzzzz") };
+    let set = before.iter().copied().chain([last.as_str()]);
+    let set = set.map(|change| change.parse().unwrap()).collect();
     let read = Case::from_text(Path::new("case.toml"), &text, &Changes { set, ideal: false });
     read.expect_err(key).to_string()
 }
@@ -278,21 +285,59 @@ fn the_schema_of_cases_has_the_keys_that_the_program_reads() {
     ] {
         let keys: Vec<&str> = table.split('.').filter(|key| !key.is_empty()).collect();
         let dot = if table.is_empty() { "" } else { "." };
-        let said = complaint(&format!("{table}{dot}zzzzzzzz"));
-        let known = said.split("known here: ").nth(1).unwrap_or_else(|| panic!("{said}"));
-        let mut known: Vec<&str> = known.lines().next().unwrap().split(", ").collect();
-        let at = schema_at(&schema, &keys).unwrap();
-        let at = match table {
-            "joints.A" => of_kind(at, "revolute"),
-            "drives.crank" => of_kind(at, "speed"),
-            "loads.gravity" => of_kind(at, "gravity"),
-            _ => at,
+        let known = known(&format!("{table}{dot}zzzzzzzz"), &[]);
+        let in_schema = schema_at(&schema, &keys).unwrap();
+        let in_schema = match table {
+            "joints.A" => of_kind(in_schema, "revolute"),
+            "drives.crank" => of_kind(in_schema, "speed"),
+            "loads.gravity" => of_kind(in_schema, "gravity"),
+            _ => in_schema,
         };
-        let in_schema = at["properties"].as_object().unwrap();
-        let mut told: Vec<&str> = in_schema.keys().map(String::as_str).collect();
-        known.sort_unstable();
-        told.sort_unstable();
-        assert_eq!(told, known, "{table} in the schema, and the keys that are read");
+        let told = properties(in_schema);
+        if in_schema["oneOf"].is_null() {
+            assert_eq!(told, known, "{table} in the schema, and the keys that are read");
+        } else {
+            assert!(known.is_subset(&told), "{table} in the schema: {known:?}");
+        }
+    }
+}
+
+/// The keys that the program knows beside one that it cannot know, with others set before.
+fn known(key: &str, set: &[&str]) -> BTreeSet<String> {
+    let said = complaint_after(set, key);
+    let known = said.split("known here: ").nth(1).unwrap_or_else(|| panic!("{said}"));
+    known.lines().next().unwrap().split(", ").map(str::to_owned).collect()
+}
+
+fn properties(schema: &Value) -> BTreeSet<String> {
+    schema["properties"].as_object().unwrap().keys().cloned().collect()
+}
+
+/// What a law of friction wants and refuses is what the program does.
+#[test]
+fn the_schema_of_cases_has_the_keys_of_each_friction_law() {
+    let schema = schema();
+    let friction = schema_at(&schema, &["joints", "A", "clearance", "friction"]).unwrap();
+    let laws = friction["oneOf"].as_array().unwrap();
+    let names: Vec<&Value> = laws.iter().map(|law| &law["properties"]["law"]["const"]).collect();
+    let all = friction["properties"]["law"]["enum"].as_array().unwrap();
+    assert_eq!(names, all.iter().collect::<Vec<_>>());
+    for law in laws {
+        let at = "joints.A.clearance.friction";
+        let name = &law["properties"]["law"]["const"];
+        let known = known(&format!("{at}.zzzzzzzz"), &[&format!("{at}={{ law = {name} }}")]);
+        let refused = law["properties"].as_object().unwrap().iter();
+        let refused = refused.filter(|(_, rule)| **rule == Value::Bool(false));
+        let refused: BTreeSet<String> = refused.map(|(key, _)| key.clone()).collect();
+        assert_eq!(known, &properties(friction) - &refused, "{name}");
+        let wanted = friction["required"].as_array().unwrap().iter();
+        let wanted = wanted.chain(law["required"].as_array().unwrap());
+        let wanted: BTreeSet<String> = wanted.map(|key| key.as_str().unwrap().to_owned()).collect();
+        let said = complaint_after(&[], &format!("{at}={{ law = {name} }}"));
+        for key in &known {
+            let missing = said.contains(&format!("{at}.{key}: is missing"));
+            assert_eq!(missing, wanted.contains(key) && key != "law", "{name}, {key}: {said}");
+        }
     }
 }
 

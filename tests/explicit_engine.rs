@@ -61,8 +61,7 @@ fn switch(engine: &mut Explicit<F256, Mechanism<F256>>) {
     let fired = engine.fired().to_vec();
     let system = engine.system();
     system.project(now.time, &mut now.q, &mut now.v).unwrap();
-    let state = State { time: now.time, q: &now.q, v: &now.v, carried: None };
-    system.evaluate(state).unwrap();
+    system.evaluate(now.state()).unwrap();
     for slot in (0..fired.len()).filter(|slot| fired[*slot]) {
         let (clearance, what) = system.slot(slot);
         if system.modes()[clearance] != Mode::Flight || what == EventSlot::Depth {
@@ -92,7 +91,7 @@ fn case_a(tolerance: f64, milliseconds: i64) -> Vec<(Snapshot<F256>, [F256; 2])>
             engine.within(time, &mut at).unwrap();
             let system = engine.system();
             system.project(time, &mut at.q, &mut at.v).unwrap();
-            system.evaluate(State { time, q: &at.q, v: &at.v, carried: None }).unwrap();
+            system.evaluate(at.state()).unwrap();
             let contact = system.contact_rates(0);
             let touch = contact.map_or([F256::ZERO; 2], |rates| [rates.depth, rates.force]);
             samples.push((at.clone(), touch));

@@ -232,7 +232,7 @@ impl Near<'_> {
             bodies.iter().flat_map(|b| [b.position[0], b.position[1], b.angle]).collect();
         let mut v = vec![0.0; q.len()];
         self.mechanism.project(time, &mut q, &mut v).unwrap();
-        let state = State { time, q: &q, v: &v, carried: None };
+        let state = State { time, q: &q, v: &v, z: &[], carried: None };
         self.mechanism.evaluate(state).unwrap();
         self.mechanism.observe(time, &[0.0])
     }

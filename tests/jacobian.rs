@@ -45,15 +45,18 @@ impl Trial {
         let mut y = Vec::new();
         y.extend(start.q.iter().map(|q| q + 3e-3 * numbers.next()));
         y.extend(start.v.iter().map(|v| v + 10.0 * numbers.next()));
+        let bristles = mechanism.inner_scales();
+        y.extend(bristles.iter().map(|size| 2.0 * size * numbers.next()));
         y.extend((0..mechanism.multipliers()).map(|_| 1e3 * numbers.next()));
         let mut yp: Vec<f64> = y[n..2 * n].iter().map(|v| v + numbers.next()).collect();
         yp.extend((0..n).map(|_| 1e4 * numbers.next()));
+        yp.extend(bristles.iter().map(|_| numbers.next()));
         yp.extend((0..mechanism.multipliers()).map(|_| numbers.next()));
         Trial { t: 0.01 * numbers.next().abs(), y, yp, cj: 10_f64.powf(3.0 + 4.0 * numbers.next()) }
     }
 }
 
-/// Every way in which a clearance can be: flight, and contact in each slip region, at a fast and a
+/// Every way in which a clearance can be: flight, and contact in each branch of friction, at a fast and a
 /// slow impact, with the law pulling or not.
 fn modes<S: Scalar>(mechanism: &Mechanism<S>, clearance: usize) -> Vec<Mode<S>> {
     let law = &mechanism.model().clearances()[clearance];
@@ -178,10 +181,10 @@ fn rates_of_the_offsets_are_the_derivatives_of_the_offsets() {
         let (q, v) = (&y[..n], &y[n..2 * n]);
         let along: Vec<Dual64> = q.iter().zip(v).map(|(q, v)| Dual64::new(*q, *v)).collect();
         let rest = vec![Dual64::from_re(0.0); n];
-        let state = State { time: Dual64::new(t, 1.0), q: &along, v: &rest, carried: None };
+        let state = State { time: Dual64::new(t, 1.0), q: &along, v: &rest, z: &[], carried: None };
         let mut offsets = vec![Vector::zero(); count];
         dual.offsets_at(state, &mut offsets);
-        real.evaluate(State { time: t, q, v, carried: None }).unwrap();
+        real.evaluate(State { time: t, q, v, z: &[], carried: None }).unwrap();
         let mut rates = vec![Vector::zero(); count];
         real.offset_rates(&mut rates);
         for (offset, rate) in offsets.iter().zip(&rates) {

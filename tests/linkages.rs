@@ -15,7 +15,7 @@ use std::f64::consts::PI;
 const TOLERANCE: f64 = 1e-12;
 
 /// Mechanisms in `tests/cases`, all of them moving.
-const LINKAGES: [&str; 7] = [
+const LINKAGES: [&str; 8] = [
     "double-pendulum",
     "elbow-drive",
     "crank-on-crank",
@@ -23,6 +23,7 @@ const LINKAGES: [&str; 7] = [
     "six-bar",
     "chain",
     "two-discs",
+    "rubbing-pendulum",
 ];
 
 fn linkage(name: &str, set: &[&str]) -> Case {

@@ -16,7 +16,7 @@ const TOLERANCE: f64 = 1e-12;
 /// A law, its restitution, its damping weight a, and its rebound ratio where it is known.
 type Law = (&'static str, f64, f64, Option<f64>);
 
-const LAWS: [Law; 14] = [
+const LAWS: [Law; 15] = [
     ("hertz", 1.0, 0.0, Some(1.0)),
     ("lankarani-nikravesh", 0.9, 0.75 * 0.19, Some(0.913_176_677_805_581)),
     ("lankarani-nikravesh", 0.5, 0.75 * 0.75, Some(0.725_241_114_010_197)),
@@ -28,6 +28,7 @@ const LAWS: [Law; 14] = [
     ("gonthier", 0.5, 0.75 / 0.5, None),
     ("zhiying-qishao", 0.5, 0.75 * 0.75 * std::f64::consts::E, None),
     ("flores", 0.8, 1.6 * 0.2 / 0.8, None),
+    ("flores", 0.9, 8.0 * 0.1 / 4.5, None),
     ("hu-guo", 0.75, 1.5 * 0.25 / 0.75, None),
     ("carvalho-martins", 0.5, 1.5 * 0.5 * 10.5 / 5.5, None),
     ("exact", 0.5, 1.432_750_533_271_374_6, Some(0.5)),

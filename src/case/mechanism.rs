@@ -12,7 +12,7 @@ use crate::model::{
 };
 use crate::{course, joint, load};
 
-const FRICTION_LAWS: [ReadKind<FrictionDescription>; 1] = [("ambrosio", ambrosio)];
+const FRICTION_LAWS: [ReadKind<FrictionDescription>; 2] = [("ambrosio", ambrosio), ("dahl", dahl)];
 
 const STIFFNESSES: [(&str, StiffnessDescription); 2] = [
     ("hertz-printed", StiffnessDescription::HertzPrinted),
@@ -100,6 +100,13 @@ fn ambrosio(keys: &mut TableReader) -> FrictionDescription {
         coefficient: keys.required("coefficient", ""),
         v0: keys.required("v0", "m/s"),
         v1: keys.required("v1", "m/s"),
+    }
+}
+
+fn dahl(keys: &mut TableReader) -> FrictionDescription {
+    FrictionDescription::Dahl {
+        coefficient: keys.required("coefficient", ""),
+        stiffness: keys.required("stiffness", "1/m"),
     }
 }
 

@@ -15,6 +15,7 @@
 
 use super::{Clearance, EventSlot, Gap, GapRates, Mode};
 use crate::dae::Course;
+use crate::friction::FrictionLaw;
 use crate::plane::{Motion, Pose, Vector};
 use crate::scalar::Scalar;
 
@@ -115,7 +116,7 @@ impl<S: Scalar> Clearance<S> {
             (EventSlot::Pull, Mode::Contact(contact), _) => {
                 self.normal.damping_weight() * contact.inverse_impact_rate
             }
-            (_, _, Some(friction)) => S::one() / friction.v1(),
+            (_, _, Some(friction)) => S::one() / friction.slip_scale(),
             _ => S::zero(),
         };
         (speed * per_speed).to_f64()

@@ -9,6 +9,7 @@
 
 use super::{Clearance, Contact, Gap, GapRates, GapSlopes};
 use crate::contact::{NormalForce, Penetration};
+use crate::friction::{FrictionLaw, Sloped};
 use crate::plane::{Vector, Wrench};
 use crate::scalar::Scalar;
 
@@ -19,8 +20,8 @@ pub struct ContactForce<S> {
     pub normal: NormalForce<S>,
     /// Tangential force F_T (N) on the journal, along t.
     pub tangential: S,
-    /// F_T/F_N, and its derivative by the slip (s/m).
-    ratio: (S, S),
+    /// F_T/F_N.
+    ratio: Sloped<S>,
     /// Force on the journal (N), fixed frame.
     pub on_journal: Vector<S>,
 }
@@ -34,6 +35,13 @@ pub struct ForceSlopes<S> {
     pub journal: Wrench<S>,
 }
 
+impl<S: Scalar> ContactForce<S> {
+    /// ∂F_T/∂z (N over the unit of z), by the inner state of the friction.
+    pub fn tangential_slope(&self) -> S {
+        self.ratio.d_inner * self.normal.value
+    }
+}
+
 impl<S: Scalar> Clearance<S> {
     /// Depth and rate as the normal law wants them.
     #[inline(always)]
@@ -41,7 +49,8 @@ impl<S: Scalar> Clearance<S> {
         Penetration { depth: gap.depth, rate, inverse_impact_rate: contact.inverse_impact_rate }
     }
 
-    /// The forces of a contact; from the root of the depth, where that is known
+    /// The forces of a contact, whose friction may have an `inner` state; from the root of the
+    /// depth, where that is known
     /// ([`NormalLaw::force_from_root`](crate::contact::NormalLaw::force_from_root)).
     #[inline(always)]
     pub fn force(
@@ -49,6 +58,7 @@ impl<S: Scalar> Clearance<S> {
         contact: &Contact<S>,
         gap: &Gap<S>,
         rates: &GapRates<S>,
+        inner: S,
         root: Option<S>,
     ) -> ContactForce<S> {
         let penetration = self.penetration(contact, gap, rates.rate);
@@ -59,13 +69,13 @@ impl<S: Scalar> Clearance<S> {
         if contact.pulling && self.cut_tension {
             normal = NormalForce { elastic: normal.elastic, ..NormalForce::none() };
         }
-        let ratio = match (&self.friction, contact.slip_region) {
-            (Some(friction), Some(region)) if !contact.pulling => {
-                friction.ratio(region, rates.slip)
+        let ratio = match (&self.friction, contact.branch) {
+            (Some(friction), Some(branch)) if !contact.pulling => {
+                friction.ratio(branch, rates.slip, inner)
             }
-            _ => (S::zero(), S::zero()),
+            _ => Sloped::none(),
         };
-        let tangential = ratio.0 * normal.value;
+        let tangential = ratio.value * normal.value;
         let on_journal = rates.tangent * tangential - rates.normal * normal.value;
         ContactForce { normal, tangential, ratio, on_journal }
     }
@@ -93,19 +103,45 @@ impl<S: Scalar> Clearance<S> {
     ) -> ForceSlopes<S> {
         let d_normal = force.normal.d_depth * slopes.depth + force.normal.d_rate * slopes.rate;
         let d_tangential =
-            force.ratio.0 * d_normal + force.ratio.1 * force.normal.value * slopes.slip;
+            force.ratio.value * d_normal + force.ratio.d_slip * force.normal.value * slopes.slip;
         let turn = slopes.direction;
         let df = rates.tangent * (d_tangential - force.normal.value * turn)
             - rates.normal * (d_normal + force.tangential * turn);
-        let mut bearing = Wrench::at(gap.arm_i, -df);
-        let mut journal = Wrench::at(gap.arm_j, df);
-        bearing.moment -= self.bearing_radius * d_tangential;
-        journal.moment += self.journal_radius * d_tangential;
+        let mut changed = self.changed(gap, df, d_tangential);
         match turning {
-            Some(true) => journal.moment += gap.arm_j.turned().cross(force.on_journal),
-            Some(false) => bearing.moment -= gap.arm_i.turned().cross(force.on_journal),
+            Some(true) => changed.journal.moment += gap.arm_j.turned().cross(force.on_journal),
+            Some(false) => changed.bearing.moment -= gap.arm_i.turned().cross(force.on_journal),
             None => {}
         }
+        changed
+    }
+
+    /// Changes of the wrenches with the inner state of the friction.
+    pub fn inner_slopes(
+        &self,
+        gap: &Gap<S>,
+        rates: &GapRates<S>,
+        force: &ContactForce<S>,
+    ) -> ForceSlopes<S> {
+        let d_tangential = force.tangential_slope();
+        self.changed(gap, rates.tangent * d_tangential, d_tangential)
+    }
+
+    /// Changes of the wrenches, from those of the journal's force and of F_T, where no arm turns.
+    fn changed(&self, gap: &Gap<S>, force: Vector<S>, tangential: S) -> ForceSlopes<S> {
+        let mut bearing = Wrench::at(gap.arm_i, -force);
+        let mut journal = Wrench::at(gap.arm_j, force);
+        bearing.moment -= self.bearing_radius * tangential;
+        journal.moment += self.journal_radius * tangential;
         ForceSlopes { bearing, journal }
+    }
+
+    /// ż of the friction's inner state in a contact; zero where it has none.
+    #[inline(always)]
+    pub fn inner_rate(&self, contact: &Contact<S>, rates: &GapRates<S>, inner: S) -> Sloped<S> {
+        match (&self.friction, contact.branch) {
+            (Some(friction), Some(branch)) => friction.inner_rate(branch, rates.slip, inner),
+            _ => Sloped::none(),
+        }
     }
 }

@@ -11,7 +11,7 @@ pub use gap::{Gap, GapRates, GapSlopes};
 pub use mode::{Contact, EventSlot, Mode};
 
 use crate::contact::NormalLaw;
-use crate::friction::Ambrosio;
+use crate::friction::Friction;
 use crate::joint::Pair;
 
 /// A revolute joint with clearance: bearing on body `i`, journal on body `j`.
@@ -28,7 +28,7 @@ pub struct Clearance<S> {
     /// Law of the normal force.
     pub normal: NormalLaw<S>,
     /// Law of the tangential force, if there is friction.
-    pub friction: Option<Ambrosio<S>>,
+    pub friction: Option<Friction<S>>,
     /// Whether a pulling contact force is cut to zero (key `tension`).
     pub cut_tension: bool,
     /// Smallest rate that the damping is scaled by (m/s; key `minimum_impact_rate`).

@@ -6,7 +6,7 @@
 
 use super::{Clearance, Gap, GapRates};
 use crate::dae::{Direction, Watch};
-use crate::friction::SlipRegion;
+use crate::friction::{Branch, FrictionLaw};
 use crate::scalar::Scalar;
 
 /// What a contact remembers of its begin and of its present branch.
@@ -17,8 +17,8 @@ pub struct Contact<S> {
     /// One over the rate that scales the damping (s/m): the impact rate, raised to the smallest
     /// one allowed.
     pub inverse_impact_rate: S,
-    /// Region of the friction law, if there is friction.
-    pub slip_region: Option<SlipRegion>,
+    /// Branch of the friction law, if there is friction.
+    pub branch: Option<Branch>,
     /// Whether the normal law gives a negative force.
     pub pulling: bool,
 }
@@ -37,9 +37,9 @@ pub enum Mode<S> {
 pub enum EventSlot {
     /// δ/c.
     Depth,
-    /// The slip above the lower edge of its region, over v1.
+    /// The slip above the lower edge of its branch, in units of the law's own.
     LowerEdge,
-    /// The slip below the upper edge of its region, over v1.
+    /// The slip below the upper edge of its branch, in units of the law's own.
     UpperEdge,
     /// 1 + a δ̇/δ̇⁽⁻⁾, negative where the law pulls.
     Pull,
@@ -67,7 +67,7 @@ impl<S: Scalar> Clearance<S> {
         Contact {
             impact_rate: rate,
             inverse_impact_rate,
-            slip_region: self.friction.map(|friction| friction.region(slip, slip_acceleration)),
+            branch: self.friction.map(|friction| friction.branch(slip, slip_acceleration)),
             pulling: factor < S::zero(),
         }
     }
@@ -92,9 +92,9 @@ impl<S: Scalar> Clearance<S> {
         Watch { direction, power }
     }
 
-    /// The finite edge (m/s) of the present slip region on one side.
+    /// The finite edge (m/s) of the present branch of friction on one side.
     fn edge(&self, contact: &Contact<S>, slot: EventSlot) -> Option<S> {
-        let (lower, upper) = self.friction?.edges(contact.slip_region?);
+        let (lower, upper) = self.friction?.edges(contact.branch?);
         Some(if slot == EventSlot::LowerEdge { lower } else { upper }).filter(|e| e.is_finite())
     }
 
@@ -115,7 +115,7 @@ impl<S: Scalar> Clearance<S> {
             }
             (Mode::Contact(contact), edge) => match (self.edge(contact, edge), &self.friction) {
                 (Some(at), Some(friction)) => {
-                    let above = (rates().slip - at) / friction.v1();
+                    let above = (rates().slip - at) / friction.slip_scale();
                     if edge == EventSlot::LowerEdge { above } else { -above }
                 }
                 _ => S::one(),
@@ -133,7 +133,7 @@ impl<S: Scalar> Clearance<S> {
             }
             (Mode::Contact(contact), edge) => match (self.edge(contact, edge), &self.friction) {
                 (Some(_), Some(friction)) => {
-                    let above = second.1 / friction.v1();
+                    let above = second.1 / friction.slip_scale();
                     if edge == EventSlot::LowerEdge { above } else { -above }
                 }
                 _ => S::zero(),
@@ -160,9 +160,9 @@ impl<S: Scalar> Clearance<S> {
             }
             (Mode::Contact(contact), edge) => {
                 let (slip, upward) = (rates().0.slip, edge == EventSlot::UpperEdge);
-                let slip_region = (contact.slip_region.zip(self.friction))
-                    .map(|(region, law)| law.beyond(region, upward, slip));
-                Mode::Contact(Contact { slip_region, ..*contact })
+                let branch = (contact.branch.zip(self.friction))
+                    .map(|(branch, law)| law.beyond(branch, upward, slip));
+                Mode::Contact(Contact { branch, ..*contact })
             }
         }
     }

@@ -1,6 +1,7 @@
 //! Small systems with known solutions, shared by the tests of the engines.
 
 use crate::dae::{Course, Dae, Fault, State, System, Watch};
+use crate::scalar::Scalar;
 use nalgebra::DMatrixViewMut;
 
 /// One constraint Φ(q) = 0 at a state.
@@ -229,6 +230,132 @@ impl<F: Formulas> Dae for Sample<F> {
                 jacobian[(i, j)] = (sides[0][i] - sides[1][i]) / (2.0 * step);
             }
         }
+        Ok(())
+    }
+}
+
+/// A unit mass held by a force that remembers, and its closed form from q = 0, v = 1, z = 0:
+/// ```text
+/// v̇ = −z,  ż = 2 v − 3 z;   v = 2 e^(−t) − e^(−2t),  z = −v̇
+/// ```
+pub(crate) struct Relaxing<S> {
+    accelerations: [S; 1],
+    inner_rates: [S; 1],
+}
+
+impl<S: Scalar> Relaxing<S> {
+    pub(crate) fn new() -> Self {
+        Relaxing { accelerations: [S::zero()], inner_rates: [S::zero()] }
+    }
+
+    /// q, v and z at a time (s).
+    pub(crate) fn at(time: S) -> [S; 3] {
+        let slow = (-time).exp();
+        let fast = slow * slow;
+        let two = S::from_f64(2.0);
+        let q = two * (S::one() - slow) - (S::one() - fast) * S::from_f64(0.5);
+        [q, two * slow - fast, two * (slow - fast)]
+    }
+}
+
+impl<S: Scalar> System<S> for Relaxing<S> {
+    fn coordinates(&self) -> usize {
+        1
+    }
+
+    fn multipliers(&self) -> usize {
+        0
+    }
+
+    fn integrals(&self) -> usize {
+        0
+    }
+
+    fn scales(&self) -> (&[f64], &[f64]) {
+        (&[1.0], &[1.0])
+    }
+
+    fn inner_states(&self) -> usize {
+        1
+    }
+
+    fn inner_scales(&self) -> &[f64] {
+        &[1.0]
+    }
+
+    fn evaluate(&mut self, State { v, z, .. }: State<'_, S>) -> Result<(), Fault> {
+        self.accelerations = [-z[0]];
+        self.inner_rates = [S::from_f64(2.0) * v[0] - S::from_f64(3.0) * z[0]];
+        Ok(())
+    }
+
+    fn accelerations(&self) -> &[S] {
+        &self.accelerations
+    }
+
+    fn inner_rates(&self) -> &[S] {
+        &self.inner_rates
+    }
+
+    fn lambda(&self) -> &[S] {
+        &[]
+    }
+
+    fn powers(&self) -> &[S] {
+        &[]
+    }
+
+    fn watches(&self) -> &[Watch] {
+        &[]
+    }
+
+    fn event_values(&mut self, _: State<'_, S>, _: &mut [S]) -> Result<(), Fault> {
+        Ok(())
+    }
+
+    fn event_rate(&self, _: usize) -> S {
+        S::zero()
+    }
+
+    fn course(&self, _: usize) -> Course {
+        Course::NONE
+    }
+
+    fn project(&mut self, _: S, _: &mut [S], _: &mut [S]) -> Result<f64, Fault> {
+        Ok(0.0)
+    }
+
+    fn turns(&self) -> usize {
+        0
+    }
+
+    fn turn_angles(&self, _: S, _: &[S], _: &mut [S]) {}
+
+    fn turn_rates(&self, _: S, _: &[S], _: &mut [S]) {}
+}
+
+impl Dae for Relaxing<f64> {
+    fn residual(&mut self, _: f64, y: &[f64], yp: &[f64], r: &mut [f64]) -> Result<(), Fault> {
+        r[0] = yp[0] - y[1];
+        r[1] = yp[1] + y[2];
+        r[2] = yp[2] - 2.0 * y[1] + 3.0 * y[2];
+        Ok(())
+    }
+
+    fn jacobian(
+        &mut self,
+        _: f64,
+        _: &[f64],
+        _: &[f64],
+        cj: f64,
+        jacobian: &mut DMatrixViewMut<'_, f64>,
+    ) -> Result<(), Fault> {
+        for (at, entry) in
+            [((0, 1), -1.0), ((1, 2), 1.0), ((2, 1), -2.0), ((0, 0), cj), ((1, 1), cj)]
+        {
+            jacobian[at] = entry;
+        }
+        jacobian[(2, 2)] = cj + 3.0;
         Ok(())
     }
 }

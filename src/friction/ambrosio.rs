@@ -16,11 +16,12 @@
 //! kink at each edge: an integration of high order must restart there, and therefore the law is
 //! evaluated by region, each of which goes on smoothly beyond its edges.
 
+use super::{Branch, FrictionLaw, Sloped};
 use crate::scalar::Scalar;
 
 /// Which piece of the law is in force.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum SlipRegion {
+enum SlipRegion {
     /// v_T ≤ −v1: full friction, slip backward.
     Backward,
     /// −v1 ≤ v_T ≤ −v0.
@@ -35,8 +36,21 @@ pub enum SlipRegion {
 
 use SlipRegion::{Backward, Forward, RampBackward, RampForward, Still};
 
-/// The regions in the order of v_T.
+/// The regions in the order of v_T, which is that of the branches.
 const ORDER: [SlipRegion; 5] = [Backward, RampBackward, Still, RampForward, Forward];
+
+impl From<Branch> for SlipRegion {
+    #[inline(always)]
+    fn from(Branch(number): Branch) -> Self {
+        ORDER[usize::from(number)]
+    }
+}
+
+impl From<SlipRegion> for Branch {
+    fn from(region: SlipRegion) -> Self {
+        Branch(region as u8)
+    }
+}
 
 /// The law and its parameters.
 #[derive(Debug, Clone, Copy)]
@@ -82,11 +96,6 @@ impl Ramp {
 }
 
 impl<S: Scalar> Ambrosio<S> {
-    /// Its numbers as doubles.
-    pub fn ramp(&self) -> Ramp {
-        Ramp { coefficient: self.coefficient.to_f64(), v0: self.v0.to_f64(), v1: self.v1.to_f64() }
-    }
-
     /// Friction with coefficient c_f and ramp from v0 to v1 (m/s), 0 ≤ v0 < v1.
     ///
     /// A slip that decays onto an edge of the ramp from above must not cross it again and again
@@ -98,14 +107,9 @@ impl<S: Scalar> Ambrosio<S> {
         Ambrosio { coefficient, v0, v1, inverse_width: S::one() / (v1 - v0), hysteresis }
     }
 
-    /// Upper end v1 of the ramp (m/s), the scale of slip.
-    pub fn v1(&self) -> S {
-        self.v1
-    }
-
     /// Tangential force per normal force, F_T/F_N, and its derivative by the slip (s/m).
     #[inline(always)]
-    pub fn ratio(&self, region: SlipRegion, slip: S) -> (S, S) {
+    fn of_slip(&self, region: SlipRegion, slip: S) -> (S, S) {
         let slope = -self.coefficient * self.inverse_width;
         match region {
             Backward => (self.coefficient, S::zero()),
@@ -119,9 +123,9 @@ impl<S: Scalar> Ambrosio<S> {
     /// The region of a slip (m/s) about whose past nothing is known. Neighbours overlap by the
     /// hysteresis; there it is the one that the slip's acceleration (m/s²) leads into, for an
     /// event function that is zero at a restart never passes zero.
-    pub fn region(&self, slip: S, acceleration: S) -> SlipRegion {
+    fn region(&self, slip: S, acceleration: S) -> SlipRegion {
         let holds = |region: &SlipRegion| {
-            let (lower, upper) = self.edges(*region);
+            let (lower, upper) = self.edges_of(*region);
             lower <= slip && slip <= upper && !self.is_empty(*region)
         };
         let (first, last) = (
@@ -142,7 +146,7 @@ impl<S: Scalar> Ambrosio<S> {
     }
 
     /// The slips (m/s) at which a region is left, below and above; infinite where it has no edge.
-    pub fn edges(&self, region: SlipRegion) -> (S, S) {
+    fn edges_of(&self, region: SlipRegion) -> (S, S) {
         let far = S::from_f64(f64::INFINITY);
         let h = self.hysteresis;
         match region {
@@ -157,22 +161,57 @@ impl<S: Scalar> Ambrosio<S> {
     /// The region after `region` was left at `slip` (m/s) through its upper or its lower edge, or
     /// one further that way. Never back: an edge that was met counts as passed, on whichever side
     /// of it the errors of the slip have left it.
-    pub fn beyond(&self, region: SlipRegion, upward: bool, slip: S) -> SlipRegion {
+    fn region_beyond(&self, region: SlipRegion, upward: bool, slip: S) -> SlipRegion {
         let mut index = ORDER.iter().position(|r| *r == region).unwrap_or(2);
         if upward {
             index = (index + 1).min(ORDER.len() - 1);
             while index + 1 < ORDER.len()
-                && (self.is_empty(ORDER[index]) || slip > self.edges(ORDER[index]).1)
+                && (self.is_empty(ORDER[index]) || slip > self.edges_of(ORDER[index]).1)
             {
                 index += 1;
             }
         } else {
             index = index.saturating_sub(1);
-            while index > 0 && (self.is_empty(ORDER[index]) || slip < self.edges(ORDER[index]).0) {
+            while index > 0 && (self.is_empty(ORDER[index]) || slip < self.edges_of(ORDER[index]).0)
+            {
                 index -= 1;
             }
         }
         ORDER[index]
+    }
+}
+
+impl<S: Scalar> FrictionLaw<S> for Ambrosio<S> {
+    #[inline(always)]
+    fn ratio(&self, branch: Branch, slip: S, _: S) -> Sloped<S> {
+        let (value, d_slip) = self.of_slip(branch.into(), slip);
+        Sloped { value, d_slip, d_inner: S::zero() }
+    }
+
+    fn branch(&self, slip: S, acceleration: S) -> Branch {
+        self.region(slip, acceleration).into()
+    }
+
+    fn edges(&self, branch: Branch) -> (S, S) {
+        self.edges_of(branch.into())
+    }
+
+    fn beyond(&self, branch: Branch, upward: bool, slip: S) -> Branch {
+        self.region_beyond(branch.into(), upward, slip).into()
+    }
+
+    /// Upper end v1 of the ramp.
+    fn slip_scale(&self) -> S {
+        self.v1
+    }
+
+    fn ramp(&self) -> Option<Ramp> {
+        let [coefficient, v0, v1] = [self.coefficient, self.v0, self.v1].map(S::to_f64);
+        Some(Ramp { coefficient, v0, v1 })
+    }
+
+    fn limit(&self) -> S {
+        self.coefficient
     }
 }
 
@@ -188,13 +227,13 @@ mod tests {
     proptest! {
         #[test]
         fn force_opposes_slip_and_never_exceeds_coulomb(slip in -0.05..0.05f64) {
-            let (ratio, _) = law().ratio(law().region(slip, 0.0), slip);
+            let (ratio, _) = law().of_slip(law().region(slip, 0.0), slip);
             prop_assert!(ratio * slip <= 0.0 && ratio.abs() <= 0.1 * (1.0 + 1e-12));
         }
 
         #[test]
         fn opposite_slip_has_opposite_friction(slip in -0.05..0.05f64) {
-            let at = |slip| law().ratio(law().region(slip, 0.0), slip);
+            let at = |slip| law().of_slip(law().region(slip, 0.0), slip);
             prop_assert_eq!(at(slip).0, -at(-slip).0);
             prop_assert_eq!(at(slip).1, at(-slip).1);
         }
@@ -202,13 +241,13 @@ mod tests {
         #[test]
         fn a_region_just_entered_is_not_left_again_at_once(slip in -0.05..0.05f64) {
             for (at, region) in ORDER.into_iter().enumerate() {
-                let (lower, upper) = law().edges(region);
+                let (lower, upper) = law().edges_of(region);
                 if at < 4 && slip >= upper {
-                    let (lower, upper) = law().edges(law().beyond(region, true, slip));
+                    let (lower, upper) = law().edges_of(law().region_beyond(region, true, slip));
                     prop_assert!(lower <= slip && slip <= upper);
                 }
                 if at > 0 && slip <= lower {
-                    let (lower, upper) = law().edges(law().beyond(region, false, slip));
+                    let (lower, upper) = law().edges_of(law().region_beyond(region, false, slip));
                     prop_assert!(lower <= slip && slip <= upper);
                 }
             }
@@ -218,18 +257,18 @@ mod tests {
         fn an_edge_that_was_met_is_passed_whatever_the_errors_of_the_slip(
             off in -1e-6..1e-6f64, at in 0usize..4,
         ) {
-            let met = law().edges(ORDER[at]).1 + off;
-            prop_assert!(law().beyond(ORDER[at], true, met) != ORDER[at]);
-            let met = law().edges(ORDER[at + 1]).0 + off;
-            prop_assert!(law().beyond(ORDER[at + 1], false, met) != ORDER[at + 1]);
+            let met = law().edges_of(ORDER[at]).1 + off;
+            prop_assert!(law().region_beyond(ORDER[at], true, met) != ORDER[at]);
+            let met = law().edges_of(ORDER[at + 1]).0 + off;
+            prop_assert!(law().region_beyond(ORDER[at + 1], false, met) != ORDER[at + 1]);
         }
     }
 
     #[test]
     fn a_slip_that_has_not_the_friction_of_its_law_is_off() {
-        let ramp = law().ramp();
+        let ramp = law().ramp().unwrap();
         for slip in [-0.5, -1e-2, -5e-3, -1e-3, -1e-4, 0.0, 2e-4, 3e-3, 1e-2, 0.2] {
-            let (ratio, _) = law().ratio(law().region(slip, 0.0), slip);
+            let (ratio, _) = law().of_slip(law().region(slip, 0.0), slip);
             assert!(ramp.off(slip, ratio) < 1e-15, "{slip}: {}", ramp.off(slip, ratio));
         }
         // full friction backward at a slip forward, none at a fast one, half of it where all is due
@@ -260,10 +299,10 @@ mod tests {
 
     #[test]
     fn an_edge_hit_exactly_counts_as_passed() {
-        assert_eq!(law().beyond(Still, true, 1e-3), RampForward);
-        assert_eq!(law().beyond(RampForward, true, 1e-2), Forward);
-        let (lower, _) = law().edges(Forward);
-        assert_eq!(law().beyond(Forward, false, lower), RampForward);
+        assert_eq!(law().region_beyond(Still, true, 1e-3), RampForward);
+        assert_eq!(law().region_beyond(RampForward, true, 1e-2), Forward);
+        let (lower, _) = law().edges_of(Forward);
+        assert_eq!(law().region_beyond(Forward, false, lower), RampForward);
     }
 
     #[test]
@@ -274,7 +313,7 @@ mod tests {
             (1e-3, Still, RampForward),
             (1e-2, RampForward, Forward),
         ] {
-            let jump = law().ratio(below, edge).0 - law().ratio(above, edge).0;
+            let jump = law().of_slip(below, edge).0 - law().of_slip(above, edge).0;
             assert!(jump.abs() < 1e-15, "{edge}: {jump:e}");
         }
     }
@@ -283,9 +322,9 @@ mod tests {
     fn a_ramp_through_zero_has_no_still_region() {
         let law = Ambrosio::new(0.1, 0.0, 1e-2, 1e-6);
         for off in [-1e-8, 0.0, 1e-8] {
-            assert_eq!(law.beyond(RampForward, false, off), RampBackward);
-            assert_eq!(law.beyond(RampBackward, true, off), RampForward);
+            assert_eq!(law.region_beyond(RampForward, false, off), RampBackward);
+            assert_eq!(law.region_beyond(RampBackward, true, off), RampForward);
         }
-        assert_eq!(law.ratio(RampForward, 1e-4), law.ratio(RampBackward, 1e-4));
+        assert_eq!(law.of_slip(RampForward, 1e-4), law.of_slip(RampBackward, 1e-4));
     }
 }

@@ -20,8 +20,12 @@ impl<S: Scalar> Mechanism<S> {
             load.apply(now.time, masses, &now.poses, &now.motions, &mut now.wrenches);
         }
         for (k, clearance) in self.model.clearances().iter().enumerate() {
+            let place = self.inner_places[k];
             let Mode::Contact(contact) = &self.modes[k] else {
                 now.touches[k] = None;
+                if let Some(place) = place {
+                    now.z_dot[place] = S::zero();
+                }
                 continue;
             };
             let mut gap = now.gap(k, clearance);
@@ -31,7 +35,11 @@ impl<S: Scalar> Mechanism<S> {
             if let Some(root) = root {
                 gap.depth = clearance.normal.depth_from_root(root);
             }
-            let force = clearance.force(contact, &gap, &rates, root);
+            let inner = place.map_or(S::zero(), |place| now.z[place]);
+            if let Some(place) = place {
+                now.z_dot[place] = clearance.inner_rate(contact, &rates, inner).value;
+            }
+            let force = clearance.force(contact, &gap, &rates, inner, root);
             let [bearing, journal] = clearance.wrenches(&gap, &force);
             now.wrenches[clearance.pair.i] += bearing;
             now.wrenches[clearance.pair.j] += journal;

@@ -1,14 +1,16 @@
 //! Residual and Jacobian of the index-1 form, written by hand.
 //! ```text
 //! r_q = q̇ − v
-//! r_v = v̇ − M⁻¹ (Q(q, v, t) − Φ_qᵀ λ)
+//! r_v = v̇ − M⁻¹ (Q(q, v, z, t) − Φ_qᵀ λ)
+//! r_z = ż − f(q, v, z, t)
 //! r_λ = Φ̈(q, v, v̇, t)
 //! ```
-//! y = (q, v, λ); the Jacobian is ∂r/∂y + c_j ∂r/∂ẏ. It is tested against dual numbers, column by
+//! y = (q, v, z, λ); the Jacobian is ∂r/∂y + c_j ∂r/∂ẏ. It is tested against dual numbers, column by
 //! column.
 
 use super::Mechanism;
 use super::layout::Role;
+use crate::clearance::Mode;
 use crate::dae::{Dae, Fault, State};
 use crate::plane::{Motion, Vector, Wrench};
 use crate::scalar::Scalar;
@@ -34,21 +36,27 @@ impl<S: Scalar> Mechanism<S> {
             r[row + 2] = rate[2] - by[2] * wrench.moment;
         }
         let now = &self.now;
+        let first = 2 * n + now.z.len();
+        for (k, rate) in now.z_dot.iter().enumerate() {
+            r[2 * n + k] = yp[2 * n + k] - *rate;
+        }
         for (row, arms) in self.layout.constraints.iter().zip(&now.arms) {
             let (motions, accelerations) = (&now.motions, &now.accelerations);
-            let at = 2 * n + row.first;
+            let at = first + row.first;
             let error = &mut r[at..at + row.constraint.rows()];
             let poses = &now.poses;
             row.constraint.acceleration_error(t, arms, poses, motions, accelerations, error);
         }
     }
 
-    /// Places the bodies at (q, v) of `y`, with the accelerations of `yp` and λ of `y`.
+    /// Places the bodies at (q, v) of `y`, with z and λ of `y` and the accelerations of `yp`.
     fn stand(&mut self, t: S, y: &[S], yp: &[S]) {
         let n = self.layout.coordinates;
-        self.place(&State { time: t, q: &y[..n], v: &y[n..2 * n], carried: None });
+        let (z, lambda) = y[2 * n..].split_at(self.now.z.len());
+        self.place(&State { time: t, q: &y[..n], v: &y[n..2 * n], z, carried: None });
         self.reach();
-        self.now.lambda.copy_from_slice(&y[2 * n..]);
+        self.now.z.copy_from_slice(z);
+        self.now.lambda.copy_from_slice(lambda);
         for (body, role) in self.layout.roles.iter().enumerate() {
             let Role::Free(at) = *role else { continue };
             let a = &yp[n + at..n + at + 3];
@@ -91,6 +99,9 @@ impl Dae for Mechanism<f64> {
             j[(k, n + k)] = -1.0;
             j[(n + k, n + k)] = cj;
         }
+        for k in 0..self.now.z.len() {
+            j[(2 * n + k, 2 * n + k)] = cj;
+        }
         for clearance in 0..self.modes.len() {
             self.contact_entries(clearance, j);
         }
@@ -101,12 +112,24 @@ impl Dae for Mechanism<f64> {
 }
 
 impl Mechanism<f64> {
-    /// −M⁻¹ ∂Q/∂(q, v) of one contact.
+    /// −M⁻¹ ∂Q/∂(q, v, z) and −∂f/∂(q, v, z) of one contact.
     fn contact_entries(&self, k: usize, j: &mut DMatrixViewMut<'_, f64>) {
-        let Some(touch) = &self.now.touches[k] else { return };
+        let (Some(touch), Mode::Contact(contact)) = (&self.now.touches[k], &self.modes[k]) else {
+            return;
+        };
         let law = &self.model.clearances()[k];
         let n = self.layout.coordinates;
         let (gap, rates, force) = (&touch.gap, &touch.rates, &touch.force);
+        let inner = self.inner_places[k].map(|place| {
+            let at = 2 * n + place;
+            (at, law.inner_rate(contact, rates, self.now.z[place]))
+        });
+        if let Some((at, rate)) = inner {
+            let slopes = law.inner_slopes(gap, rates, force);
+            self.subtract(law.pair.i, at, &slopes.bearing, j);
+            self.subtract(law.pair.j, at, &slopes.journal, j);
+            j[(at, at)] -= rate.d_inner;
+        }
         for (of_journal, body) in [(false, law.pair.i), (true, law.pair.j)] {
             let Some(at) = self.place_in_q(body) else { continue };
             for c in 0..3 {
@@ -120,6 +143,10 @@ impl Mechanism<f64> {
                 let slopes = law.force_slopes(gap, rates, force, &by_v, None);
                 self.subtract(law.pair.i, n + at + c, &slopes.bearing, j);
                 self.subtract(law.pair.j, n + at + c, &slopes.journal, j);
+                if let Some((row, rate)) = inner {
+                    j[(row, at + c)] -= rate.d_slip * by_q.slip;
+                    j[(row, n + at + c)] -= rate.d_slip * by_v.slip;
+                }
             }
         }
     }
@@ -171,8 +198,9 @@ impl Mechanism<f64> {
                 let (Some(of), Some(by)) = (place(of), place(by)) else { return };
                 j[(n + of, by)] += self.inverse_masses[of] * entry;
             });
+            let first = 2 * n + now.z.len() + row.first;
             for (r, blocks) in now.jacobian[row.range()].iter().enumerate() {
-                let equation = 2 * n + row.first + r;
+                let equation = first + r;
                 for (at, block) in bodies.into_iter().zip(blocks) {
                     let Some(at) = at else { continue };
                     for (c, entry) in block.iter().enumerate() {
@@ -183,7 +211,7 @@ impl Mechanism<f64> {
             }
             let (poses, motions, accelerations) = (&now.poses, &now.motions, &now.accelerations);
             constraint.acceleration_slopes(poses, motions, accelerations, |r, by, [q, v]| {
-                let (equation, Some(by)) = (2 * n + row.first + r, place(by)) else { return };
+                let (equation, Some(by)) = (first + r, place(by)) else { return };
                 j[(equation, by)] += q;
                 j[(equation, n + by)] += v;
             });

@@ -3,6 +3,7 @@
 
 use super::Mechanism;
 use super::layout::{Layout, Origin, Role, Row};
+use crate::clearance::Clearance;
 use crate::course::Course;
 use crate::model::Model;
 use crate::plane::Vector;
@@ -102,17 +103,23 @@ pub(super) fn force_sources<S: Scalar>(model: &Model<S>, layout: &Layout<S>) -> 
 }
 
 /// What a unit force along the line of centres gives the surfaces of each clearance in acceleration
-/// apart, at most (1/kg).
-pub(super) fn mobilities<S: Scalar>(model: &Model<S>, layout: &Layout<S>) -> Vec<f64> {
-    let of = |body: usize, arm: Vector<S>| match layout.roles[body] {
+/// apart, at most, and one across it, at the surfaces (1/kg).
+pub(super) fn mobilities<S: Scalar>(model: &Model<S>, layout: &Layout<S>) -> Vec<[f64; 2]> {
+    let of = |body: usize, arm: Vector<S>, radius: S| match layout.roles[body] {
         Role::Free(_) => {
-            let (mass, inertia) = (model.masses()[body], model.inertias()[body]);
-            1.0 / mass.to_f64() + arm.dot(arm).to_f64() / inertia.to_f64()
+            let (mass, inertia) = (model.masses()[body].to_f64(), model.inertias()[body].to_f64());
+            let far = (arm.norm() + radius).to_f64();
+            [1.0 / mass + arm.dot(arm).to_f64() / inertia, 1.0 / mass + far * far / inertia]
         }
-        Role::Ground | Role::Driven => 0.0,
+        Role::Ground | Role::Driven => [0.0; 2],
     };
-    let pairs = model.clearances().iter().map(|clearance| clearance.pair);
-    pairs.map(|pair| of(pair.i, pair.s_i) + of(pair.j, pair.s_j)).collect()
+    let both = |clearance: &Clearance<S>| {
+        let pair = &clearance.pair;
+        let [along_i, across_i] = of(pair.i, pair.s_i, clearance.bearing_radius);
+        let [along_j, across_j] = of(pair.j, pair.s_j, clearance.journal_radius);
+        [along_i + along_j, across_i + across_j]
+    };
+    model.clearances().iter().map(both).collect()
 }
 
 /// Square of the fastest pace (rad²/s²) that loads and courses of time give the bodies.
@@ -183,12 +190,17 @@ impl<S: Scalar> Mechanism<S> {
     }
 
     /// Square of the fastest pace (rad²/s²) of the motion at the state last evaluated: that of
-    /// contacts that swing on their stiffness, or of turning bodies against each other.
+    /// contacts that swing on their stiffness, or on that of bristles, or of turning bodies against
+    /// each other.
     #[inline]
     pub fn pace_squared(&self) -> f64 {
         let touches = self.now.touches.iter().zip(&self.mobilities);
         let swing = touches.fold(0.0, |sum, (touch, mobility)| match touch {
-            Some(touch) => sum + mobility * touch.force.normal.d_depth.to_f64().abs(),
+            Some(touch) => {
+                let [along, across] = mobility;
+                let bristles = touch.force.tangential_slope().to_f64().abs();
+                sum + along * touch.force.normal.d_depth.to_f64().abs() + across * bristles
+            }
             None => sum,
         });
         let fastest = self.now.motions.iter().fold(0.0, |fastest, motion| {

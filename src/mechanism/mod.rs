@@ -22,6 +22,7 @@ pub use system::{ContactRates, SingularPosition};
 
 use crate::clearance::{Clearance, ContactForce, EventSlot, Gap, GapRates, Mode};
 use crate::dae::{Snapshot, Watch};
+use crate::friction::FrictionLaw;
 use crate::joint::{Arms, Blocks, MOST_BODIES, Relation};
 use crate::model::{Complaint, Model};
 use crate::plane::{Motion, Pose, Vector, Wrench};
@@ -49,11 +50,14 @@ pub struct Mechanism<S> {
     start_accuracy: f64,
     coordinate_scales: Vec<f64>,
     velocity_scales: Vec<f64>,
+    /// Place in z of the inner state of each clearance's friction, where it has one.
+    inner_places: Vec<Option<usize>>,
+    inner_scales: Vec<f64>,
     length: f64,
     /// Where the force of each joint stands.
     force_sources: Vec<ForceSource>,
-    /// Mobility of each clearance (1/kg).
-    mobilities: Vec<f64>,
+    /// Mobility of each clearance along and across the line of centres (1/kg).
+    mobilities: Vec<[f64; 2]>,
     /// Square of the fastest pace (rad²/s²) that loads and courses give.
     given_pace: f64,
     now: Evaluation<S>,
@@ -82,6 +86,9 @@ struct Evaluation<S> {
     touches: Vec<Option<Touch<S>>>,
     /// v̇ by place in v.
     v_dot: Vec<S>,
+    /// Inner states, and their rates.
+    z: Vec<S>,
+    z_dot: Vec<S>,
     lambda: Vec<S>,
     powers: Vec<S>,
     /// Arms of each constraint's points.
@@ -95,7 +102,7 @@ struct Evaluation<S> {
 }
 
 impl<S: Scalar> Evaluation<S> {
-    fn new(model: &Model<S>, layout: &Layout<S>) -> Self {
+    fn new(model: &Model<S>, layout: &Layout<S>, inner_states: usize) -> Self {
         let bodies = model.masses().len();
         let clearances = model.clearances().len();
         Evaluation {
@@ -107,6 +114,8 @@ impl<S: Scalar> Evaluation<S> {
             wrenches: vec![Wrench::none(); bodies],
             touches: vec![None; clearances],
             v_dot: vec![S::zero(); layout.coordinates],
+            z: vec![S::zero(); inner_states],
+            z_dot: vec![S::zero(); inner_states],
             lambda: vec![S::zero(); layout.rows],
             powers: vec![S::zero(); Ledger::of(model).len()],
             arms: vec![[Vector::zero(); 2]; layout.constraints.len()],
@@ -145,12 +154,13 @@ impl<S: Scalar> Mechanism<S> {
                 clearance.event_slots().into_iter().map(move |slot| (k, slot))
             })
             .collect();
+        let (inner_places, inner_scales) = inner_states(&model);
         let depth_slots = (0..slots.len()).filter(|slot| slots[*slot].1 == EventSlot::Depth);
         let mut mechanism = Mechanism {
             depth_slots: depth_slots.collect(),
             radial_roots: model.clearances().iter().map(radial_root).collect(),
-            now: Evaluation::new(&model, &layout),
-            start: Snapshot::new(layout.coordinates, Ledger::of(&model).len()),
+            now: Evaluation::new(&model, &layout, inner_scales.len()),
+            start: Snapshot::new(layout.coordinates, inner_scales.len(), Ledger::of(&model).len()),
             ledger: Ledger::of(&model),
             start_energy: S::zero(),
             start_accuracy: 0.0,
@@ -160,6 +170,8 @@ impl<S: Scalar> Mechanism<S> {
             inverse_masses,
             coordinate_scales: Vec::new(),
             velocity_scales: Vec::new(),
+            inner_places,
+            inner_scales,
             length: 1.0,
             force_sources: measure::force_sources(&model, &layout),
             mobilities: measure::mobilities(&model, &layout),
@@ -176,8 +188,8 @@ impl<S: Scalar> Mechanism<S> {
         &self.model
     }
 
-    /// The assembled start: coordinates, from [`Model::origin`], and velocities at t = 0, integrals
-    /// zero.
+    /// The assembled start: coordinates, from [`Model::origin`], and velocities at t = 0, inner
+    /// states and integrals zero.
     pub fn start(&self) -> &Snapshot<S> {
         &self.start
     }
@@ -248,6 +260,16 @@ impl<S: Scalar> Mechanism<S> {
         self.watch();
     }
 
+    /// Puts to zero what is remembered of contacts that have ended: bristles that nothing touches
+    /// are straight.
+    pub fn release(&self, z: &mut [S]) {
+        for (mode, place) in self.modes.iter().zip(&self.inner_places) {
+            if let (Mode::Flight, Some(place)) = (mode, place) {
+                z[*place] = S::zero();
+            }
+        }
+    }
+
     /// Brings the watches in line with the modes.
     fn watch(&mut self) {
         let (model, modes) = (&self.model, &self.modes);
@@ -269,6 +291,17 @@ impl<S: Scalar> Mechanism<S> {
         });
         self.set_mode(k, mode);
     }
+}
+
+/// Place in z of the inner state of each clearance's friction, and the sizes of all of them.
+fn inner_states<S: Scalar>(model: &Model<S>) -> (Vec<Option<usize>>, Vec<f64>) {
+    let mut sizes = Vec::new();
+    let mut place = |clearance: &Clearance<S>| {
+        sizes.push(clearance.friction?.inner_scale()?);
+        Some(sizes.len() - 1)
+    };
+    let places = model.clearances().iter().map(&mut place).collect();
+    (places, sizes)
 }
 
 /// c^power, with the power in which the contact law is smooth.

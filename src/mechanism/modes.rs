@@ -52,14 +52,14 @@ impl<S: Scalar> Mechanism<S> {
             }
         }
         self.settle_resting(state, resting)?;
-        self.choose_slip_regions(state)?;
+        self.choose_branches(state)?;
         self.watch();
         Ok(())
     }
 
-    /// Chooses the regions of friction of the contacts at the start once more, now that the
+    /// Chooses the branches of friction of the contacts at the start once more, now that the
     /// accelerations with these contacts can be known.
-    fn choose_slip_regions(&mut self, state: State<'_, S>) -> Result<(), Fault> {
+    fn choose_branches(&mut self, state: State<'_, S>) -> Result<(), Fault> {
         if self.model.clearances().iter().all(|law| law.friction.is_none()) {
             return Ok(());
         }
@@ -135,7 +135,7 @@ impl<S: Scalar> Mechanism<S> {
         let Some(mut span) = self.first_span(resting) else { return Ok(()) };
         for _ in 0..MOST_FLIGHTS {
             let (q, v) = self.fly(state, span)?;
-            self.place(&State { time: state.time + span, q: &q, v: &v, carried: None });
+            self.place(&State { time: state.time + span, q: &q, v: &v, z: &[], carried: None });
             for (resting, before) in resting.iter_mut().zip(&before) {
                 let k = resting.clearance;
                 let gap = self.now.gap(k, &self.model.clearances()[k]);
@@ -183,21 +183,22 @@ impl<S: Scalar> Mechanism<S> {
     /// modes. Changes are summed apart from what they change.
     fn fly(&mut self, state: State<'_, S>, span: S) -> Result<(Vec<S>, Vec<S>), Fault> {
         let n = state.q.len();
-        let start: Vec<S> = state.q.iter().chain(state.v).copied().collect();
-        let mut change = vec![S::zero(); 2 * n];
+        let start: Vec<S> = state.q.iter().chain(state.v).chain(state.z).copied().collect();
+        let mut change = vec![S::zero(); start.len()];
         let step = span * S::from_f64(1.0 / FLIGHT_STEPS as f64);
         for i in 0..FLIGHT_STEPS {
             let begin = state.time + step * S::from_f64(i as f64);
-            let mut slope = vec![S::zero(); 2 * n];
-            let mut sum = vec![S::zero(); 2 * n];
+            let mut slope = vec![S::zero(); start.len()];
+            let mut sum = slope.clone();
             for (node, weight) in [(0.0, 1.0), (0.5, 2.0), (0.5, 2.0), (1.0, 1.0)] {
                 let node = step * S::from_f64(node);
                 let y: Vec<S> =
-                    (0..2 * n).map(|k| start[k] + (change[k] + node * slope[k])).collect();
-                let (q, v) = y.split_at(n);
-                self.evaluate(State { time: begin + node, q, v, carried: None })?;
+                    (0..start.len()).map(|k| start[k] + (change[k] + node * slope[k])).collect();
+                let (q, v, z) = (&y[..n], &y[n..2 * n], &y[2 * n..]);
+                self.evaluate(State { time: begin + node, q, v, z, carried: None })?;
                 slope[..n].copy_from_slice(v);
-                slope[n..].copy_from_slice(&self.now.v_dot);
+                slope[n..2 * n].copy_from_slice(&self.now.v_dot);
+                slope[2 * n..].copy_from_slice(&self.now.z_dot);
                 let weight = S::from_f64(weight);
                 sum.iter_mut().zip(&slope).for_each(|(sum, slope)| *sum += weight * *slope);
             }
@@ -205,6 +206,7 @@ impl<S: Scalar> Mechanism<S> {
             change.iter_mut().zip(&sum).for_each(|(change, sum)| *change += sixth * *sum);
         }
         let mut end: Vec<S> = start.iter().zip(&change).map(|(x, change)| *x + *change).collect();
+        end.truncate(2 * n);
         let v = end.split_off(n);
         Ok((end, v))
     }

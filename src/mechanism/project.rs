@@ -50,7 +50,7 @@ impl<S: Scalar> Mechanism<S> {
         let mut drift = None;
         let mut last = S::from_f64(f64::INFINITY);
         for _ in 0..MOST_ITERATIONS {
-            self.place(&State { time, q, v, carried: None });
+            self.place(&State { time, q, v, z: &[], carried: None });
             let error = self.position_errors();
             drift.get_or_insert(error.to_f64());
             // below `good` there is nothing but rounding; no gain means the same
@@ -64,7 +64,7 @@ impl<S: Scalar> Mechanism<S> {
             last = error;
             self.correct(q)?;
         }
-        self.place(&State { time, q, v, carried: None });
+        self.place(&State { time, q, v, z: &[], carried: None });
         self.check_closed()?;
         self.velocity_errors();
         self.correct(v)?;
@@ -80,7 +80,7 @@ impl<S: Scalar> Mechanism<S> {
     /// with the projector P of the constraints.
     pub fn withdraw(&mut self, time: S, q: &mut [S], v: &mut [S]) -> Result<(), Fault> {
         for _ in 0..MOST_ITERATIONS {
-            self.place(&State { time, q, v, carried: None });
+            self.place(&State { time, q, v, z: &[], carried: None });
             let Some((k, depth)) = self.in_the_wall() else { break };
             let across = self.across_the_wall(k);
             let mut along: Vec<S> =
@@ -90,7 +90,7 @@ impl<S: Scalar> Mechanism<S> {
             if self.layout.rows > 0 {
                 // v holds the constraints: what is off of the sum is what is off of `along`
                 let sum: Vec<S> = along.iter().zip(&*v).map(|(d, v)| *d + *v).collect();
-                self.place(&State { time, q, v: &sum, carried: None });
+                self.place(&State { time, q, v: &sum, z: &[], carried: None });
                 self.velocity_errors();
                 self.correct(&mut along)?;
             }

@@ -188,7 +188,8 @@ impl<S: Scalar> Mechanism<S> {
         self.start.q.copy_from_slice(q);
         self.start.v.copy_from_slice(v);
         self.set_scales(q, v);
-        let state = State { time: S::zero(), q, v, carried: None };
+        let z = self.start.z.clone();
+        let state = State { time: S::zero(), q, v, z: &z, carried: None };
         self.choose_start_modes(state).map_err(start_fault)?;
         self.evaluate(state).map_err(start_fault)?;
         self.start_energy = self.stored_energy();
@@ -352,7 +353,7 @@ impl<S: Scalar> Mechanism<S> {
 
     fn position_conditions(&mut self, q: &[S], fixed: &[Fixed<S>]) -> Conditions<S> {
         let rest = vec![S::zero(); q.len()];
-        self.place(&State { time: S::zero(), q, v: &rest, carried: None });
+        self.place(&State { time: S::zero(), q, v: &rest, z: &[], carried: None });
         let from_fixed = |fixed: &Fixed<S>| q[fixed.at] - fixed.value;
         let away = vec![S::zero(); q.len()];
         let weights = self.weights(|start| start.coordinates);
@@ -463,7 +464,7 @@ impl<S: Scalar> Mechanism<S> {
     /// Complains of every joint that does not close and every key that does not hold.
     fn check_positions(&mut self, q: &[S]) -> Result<(), Vec<Complaint>> {
         let rest = vec![S::zero(); q.len()];
-        self.place(&State { time: S::zero(), q, v: &rest, carried: None });
+        self.place(&State { time: S::zero(), q, v: &rest, z: &[], carried: None });
         let allowed = 1e-9 * self.length;
         let mut complaints = Vec::new();
         for row in &self.layout.constraints {
@@ -580,7 +581,7 @@ impl<S: Scalar> Mechanism<S> {
         named: &[S],
         fixed: &[Fixed<S>],
     ) -> Conditions<S> {
-        self.place(&State { time: S::zero(), q, v, carried: None });
+        self.place(&State { time: S::zero(), q, v, z: &[], carried: None });
         let away: Vec<S> = v.iter().zip(named).map(|(v, named)| *v - *named).collect();
         let weights = self.weights(|start| start.velocities);
         let from_fixed = |fixed: &Fixed<S>| v[fixed.at] - fixed.value;
@@ -593,7 +594,7 @@ impl<S: Scalar> Mechanism<S> {
     /// Typical sizes from the start: angles 1 rad; lengths the largest arm; rates the largest of
     /// any body, or, where all are at rest, one radian a second.
     fn set_scales(&mut self, q: &[S], v: &[S]) {
-        self.place(&State { time: S::zero(), q, v, carried: None });
+        self.place(&State { time: S::zero(), q, v, z: &[], carried: None });
         let largest = |of: &dyn Fn(&crate::plane::Motion<S>) -> S| {
             self.now.motions.iter().map(|m| of(m).abs().to_f64()).fold(0.0, f64::max)
         };

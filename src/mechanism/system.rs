@@ -50,6 +50,14 @@ impl<S: Scalar> System<S> for Mechanism<S> {
         (&self.coordinate_scales, &self.velocity_scales)
     }
 
+    fn inner_states(&self) -> usize {
+        self.inner_scales.len()
+    }
+
+    fn inner_scales(&self) -> &[f64] {
+        &self.inner_scales
+    }
+
     fn evaluate(&mut self, state: State<'_, S>) -> Result<(), Fault> {
         self.evaluate_with_roots(state, &[])
     }
@@ -63,6 +71,7 @@ impl<S: Scalar> System<S> for Mechanism<S> {
             return Err(Fault::Fatal(Box::new(Halted)));
         }
         self.place(&state);
+        self.now.z.copy_from_slice(state.z);
         self.apply_loads(roots);
         self.solve().map_err(|singular| self.singular(singular))?;
         self.drive();
@@ -72,6 +81,10 @@ impl<S: Scalar> System<S> for Mechanism<S> {
 
     fn accelerations(&self) -> &[S] {
         &self.now.v_dot
+    }
+
+    fn inner_rates(&self) -> &[S] {
+        &self.now.z_dot
     }
 
     fn lambda(&self) -> &[S] {

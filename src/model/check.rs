@@ -337,9 +337,21 @@ fn check_material(
 }
 
 fn check_friction(complaints: &mut Complaints, key: &KeyPath, friction: &FrictionDescription) {
-    let FrictionDescription::Ambrosio { coefficient, v0, v1 } = friction;
     let not_negative = "zero or positive";
-    complaints.require(key.key("coefficient"), coefficient, "", not_negative, |c| c >= 0.0);
+    let mut require_coefficient = |coefficient| {
+        complaints.require(key.key("coefficient"), coefficient, "", not_negative, |c| c >= 0.0)
+    };
+    let (v0, v1) = match friction {
+        FrictionDescription::Ambrosio { coefficient, v0, v1 } => {
+            require_coefficient(coefficient);
+            (v0, v1)
+        }
+        FrictionDescription::Dahl { coefficient, stiffness } => {
+            require_coefficient(coefficient);
+            complaints.require_positive(key.key("stiffness"), stiffness, "1/m");
+            return;
+        }
+    };
     let v0_right = complaints.require(key.key("v0"), v0, "m/s", not_negative, |v| v >= 0.0);
     let v1_right = complaints.require_positive(key.key("v1"), v1, "m/s");
     if v0_right && v1_right && v1.to_f64() <= v0.to_f64() {

@@ -143,6 +143,13 @@ pub enum FrictionDescription {
         /// Slip above which friction is full (m/s).
         v1: Decimal,
     },
+    /// `dahl`: bristles that bend.
+    Dahl {
+        /// Friction coefficient c_f; zero means no friction.
+        coefficient: Decimal,
+        /// Stiffness of the bristles over the normal force (1/m).
+        stiffness: Decimal,
+    },
 }
 
 /// A drive.

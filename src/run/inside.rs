@@ -3,7 +3,7 @@
 use super::extremes::{Look, Parts, SKETCHABLE};
 use super::recorder::Recorder;
 use super::{Error, Outcome, Run};
-use crate::dae::{Engine, Fault, Snapshot, State, System};
+use crate::dae::{Engine, Fault, Snapshot, System};
 use crate::mechanism::Mechanism;
 use crate::scalar::Scalar;
 
@@ -110,17 +110,22 @@ struct Inside<'a, S, E> {
     known: bool,
 }
 
-/// The state at an end of a step, with its accelerations (m/s², rad/s²).
+/// The state at an end of a step, with its accelerations (m/s², rad/s²) and inner rates.
 #[derive(Debug)]
 pub(super) struct End<S> {
     state: Snapshot<S>,
     accelerations: Vec<S>,
+    inner_rates: Vec<S>,
 }
 
 impl<S: Scalar> End<S> {
     /// Space for the ends of steps.
     pub fn both(state: &Snapshot<S>) -> [Self; 2] {
-        std::array::from_fn(|_| End { state: state.clone(), accelerations: Vec::new() })
+        std::array::from_fn(|_| End {
+            state: state.clone(),
+            accelerations: Vec::new(),
+            inner_rates: Vec::new(),
+        })
     }
 }
 
@@ -131,9 +136,8 @@ where
 {
     /// Evaluates the system at `at`.
     fn evaluate(&mut self) -> Result<(), Unseen<E::Error>> {
-        let Snapshot { time, q, v, .. } = &*self.at;
-        let evaluated = self.engine.system().evaluate(State { time: *time, q, v, carried: None });
-        let time = time.to_f64();
+        let evaluated = self.engine.system().evaluate(self.at.state());
+        let time = self.at.time.to_f64();
         evaluated.map_err(|source| Unseen::System { time, source })
     }
 
@@ -143,18 +147,22 @@ where
             self.engine.within(time, self.at).map_err(Unseen::Engine)?;
             self.evaluate()?;
             self.ends[k].state.clone_from(self.at);
-            let accelerations = self.engine.system().accelerations();
-            self.ends[k].accelerations.clear();
-            self.ends[k].accelerations.extend_from_slice(accelerations);
+            let (system, end) = (self.engine.system(), &mut self.ends[k]);
+            end.accelerations.clear();
+            end.accelerations.extend_from_slice(system.accelerations());
+            end.inner_rates.clear();
+            end.inner_rates.extend_from_slice(system.inner_rates());
         }
         self.known = true;
         Ok(())
     }
 
-    /// Puts a sketch of the state at a time into `at`: a quintic through both ends.
+    /// Puts a sketch of the state at a time into `at`: a quintic through both ends, for inner
+    /// states a cubic.
     fn draw(&mut self, time: S) {
         let [from, to] = &*self.ends;
         let (before, after) = (&from.accelerations, &to.accelerations);
+        let (rates, later) = (&from.inner_rates, &to.inner_rates);
         let (from, to) = (&from.state, &to.state);
         let span = to.time - from.time;
         let part = (time - from.time) / span;
@@ -175,6 +183,14 @@ where
             let inner = number(4.0) * fourth + part * number(5.0) * fifth;
             let slope = slope + part * (bend + bend + part * (number(3.0) * third + part * inner));
             self.at.v[i] = slope / span;
+        }
+        for i in 0..from.z.len() {
+            let (z, slope) = (from.z[i], span * rates[i]);
+            let value = to.z[i] - z - slope;
+            let rate = span * later[i] - slope;
+            let second = number(3.0) * value - rate;
+            let third = rate - value - value;
+            self.at.z[i] = z + part * (slope + part * (second + part * third));
         }
     }
 }

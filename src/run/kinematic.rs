@@ -285,7 +285,7 @@ fn stride<S: Scalar>(
     let (mut q, mut v) = (state.q.clone(), state.v.clone());
     let mut branch = None;
     if span != S::zero() {
-        mechanism.evaluate(State { time: state.time, q: &q, v: &v, carried: None })?;
+        mechanism.evaluate(State { time: state.time, q: &q, v: &v, z: &state.z, carried: None })?;
         for (k, a) in mechanism.accelerations().iter().enumerate() {
             q[k] += span * (v[k] + span * *a * S::ratio(1, 2));
             v[k] += span * *a;
@@ -305,7 +305,7 @@ fn stride<S: Scalar>(
         return Ok(false);
     }
     (state.time, state.q, state.v) = (to, q, v);
-    mechanism.evaluate(State { time: to, q: &state.q, v: &state.v, carried: None })?;
+    mechanism.evaluate(state.state())?;
     Ok(true)
 }
 

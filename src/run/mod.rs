@@ -24,7 +24,7 @@ pub use trajectory::Trajectory;
 pub use witness::Contradiction;
 
 use crate::clearance::{Clearance, EventSlot, Mode};
-use crate::dae::{Advance, Direction, Engine, Fault, Snapshot, State, System};
+use crate::dae::{Advance, Direction, Engine, Fault, Snapshot, System};
 use crate::halt;
 use crate::mechanism::{Ledger, Mechanism};
 use crate::scalar::Scalar;
@@ -34,7 +34,7 @@ use sampling::Mark;
 use std::ops::ControlFlow;
 use touching::{Contacts, Touching};
 use window::Window;
-use witness::Witness;
+use witness::{Bounds, Witness};
 
 /// Drift off the constraints that has the state projected and the engine restarted, over the
 /// mechanism's characteristic length.
@@ -202,7 +202,7 @@ where
     let names = system.model().names().clearances.clone();
     let deepest = |c: &Clearance<S>| c.maximum_penetration * c.journal_radius.to_f64();
     let frictions = system.model().clearances().iter();
-    let frictions = frictions.map(|clearance| clearance.friction.map(|law| law.ramp())).collect();
+    let frictions = frictions.map(|clearance| clearance.friction.map(Bounds::of)).collect();
     let allowed_depths = system.model().clearances().iter().map(deepest).collect();
     let tracker = recorder
         .keeps_revolutions()
@@ -299,9 +299,10 @@ where
         let time = now.time.to_f64();
         let fired = self.engine.fired().to_vec();
         let system = self.engine.system();
-        let state = State { time: now.time, q: &now.q, v: &now.v, carried: None };
         let mut values = vec![S::zero(); system.watches().len()];
-        system.event_values(state, &mut values).map_err(|source| Error::System { time, source })?;
+        system
+            .event_values(now.state(), &mut values)
+            .map_err(|source| Error::System { time, source })?;
         let watched = values.iter().zip(system.watches()).zip(fired);
         let beyond = watched.into_iter().position(|((value, watch), fired)| {
             let off = match watch.direction {
@@ -379,9 +380,7 @@ where
 
     /// Evaluates the system at the state in `scratch`.
     fn evaluate(&mut self) -> Outcome<(), S, E, R> {
-        let Snapshot { time, q, v, .. } = &self.scratch;
-        let state = State { time: *time, q, v, carried: None };
-        let evaluated = self.engine.system().evaluate(state);
+        let evaluated = self.engine.system().evaluate(self.scratch.state());
         evaluated.map_err(|source| Error::System { time: self.scratch.time.to_f64(), source })
     }
 
@@ -438,6 +437,7 @@ where
             }
         }
         self.withdraw()?;
+        self.engine.system().release(&mut self.scratch.z);
         let state = self.scratch.clone();
         self.restart(&state)?;
         self.segment += 1;

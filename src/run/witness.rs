@@ -5,8 +5,9 @@
 //! part, friction that is not that of the slip, or energy that comes from nowhere, end a run,
 //! whatever let them pass.
 
-use crate::friction::Ramp;
+use crate::friction::{Friction, FrictionLaw, Ramp};
 use crate::mechanism::{ClearanceObservation, Observation};
+use crate::scalar::Scalar;
 
 /// Depths (m) that are rounding, whatever the tolerance.
 const ROUNDING: f64 = 1e-12;
@@ -80,6 +81,22 @@ pub enum Contradiction {
         /// Time (s).
         time: f64,
     },
+    /// Friction beyond what its law can give.
+    #[error(
+        "the friction in {clearance} is {ratio:.6} of the normal force at t = {time:e} s, and its \
+         law gives {limit:.6} at the most: an edge of the law was passed unseen; a smaller \
+         relative_tolerance or max_step may help"
+    )]
+    TooMuchFriction {
+        /// Key of the joint.
+        clearance: String,
+        /// Magnitude of F_T/F_N.
+        ratio: f64,
+        /// The largest there can be.
+        limit: f64,
+        /// Time (s).
+        time: f64,
+    },
     /// Energy from nowhere, or to nowhere.
     #[error(
         "the energy balance is off by {residual:.3e} J at t = {time:e} s, where the largest energy \
@@ -104,17 +121,35 @@ pub enum Contradiction {
     },
 }
 
+/// What the friction of a clearance is held to.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Bounds {
+    /// The slip has it.
+    Slip(Ramp),
+    /// It remembers; this is the largest |F_T/F_N|.
+    Limit(f64),
+}
+
+impl Bounds {
+    /// Those of a law.
+    pub fn of<S: Scalar>(law: Friction<S>) -> Self {
+        law.ramp().map_or_else(|| Bounds::Limit(law.limit().to_f64()), Bounds::Slip)
+    }
+}
+
 /// Follows a run (see the module's header).
 #[derive(Debug, Clone)]
 pub(super) struct Witness {
     /// Keys of the joints with clearance.
     names: Vec<String>,
     /// Their friction, where there is any.
-    frictions: Vec<Option<Ramp>>,
+    frictions: Vec<Option<Bounds>>,
     /// What penetrations may be off by (m), rates, and slips (m/s).
     depth: f64,
     rate: f64,
     slip: f64,
+    /// Share of full friction that there may be more of it.
+    share: f64,
     /// Largest energy or work seen (J).
     energy: f64,
 }
@@ -124,7 +159,7 @@ impl Witness {
     /// tolerance; friction by clearance.
     pub fn new(
         names: Vec<String>,
-        frictions: Vec<Option<Ramp>>,
+        frictions: Vec<Option<Bounds>>,
         [length, speed, mass]: [f64; 3],
         tolerance: f64,
     ) -> Self {
@@ -135,6 +170,7 @@ impl Witness {
             depth: ROUNDING + errors * length,
             rate: errors * speed,
             slip: errors.clamp(SLIP[0], SLIP[1]) * speed,
+            share: errors.clamp(SLIP[0], SLIP[1]),
             // of a mechanism at rest there is nothing but rounding
             energy: errors * mass * speed * speed,
         }
@@ -160,10 +196,21 @@ impl Witness {
 
     /// Whether the friction of a contact is that of its slip.
     fn slips(&self, k: usize, seen: &ClearanceObservation, time: f64) -> Result<(), Contradiction> {
-        let Some(ramp) = self.frictions[k].filter(|_| seen.normal_force > 0.0) else {
+        let Some(bounds) = self.frictions[k].filter(|_| seen.normal_force > 0.0) else {
             return Ok(());
         };
         let slip = seen.slip_velocity;
+        let ramp = match bounds {
+            Bounds::Slip(ramp) => ramp,
+            Bounds::Limit(limit) => {
+                let ratio = (seen.tangential_force / seen.normal_force).abs();
+                if ratio <= limit * (1.0 + self.share) {
+                    return Ok(());
+                }
+                let clearance = self.names[k].clone();
+                return Err(Contradiction::TooMuchFriction { clearance, ratio, limit, time });
+            }
+        };
         let off = ramp.off(slip, seen.tangential_force / seen.normal_force);
         if off > self.slip + EDGE * ramp.v1 {
             let clearance = self.names[k].clone();
@@ -208,7 +255,8 @@ mod tests {
 
     fn witness() -> Witness {
         let ramp = Ramp { coefficient: 0.1, v0: 1e-3, v1: 1e-2 };
-        Witness::new(vec!["A".into()], vec![Some(ramp)], [0.1, 1.0, 1.0], 1e-12)
+        let friction = Some(Bounds::Slip(ramp));
+        Witness::new(vec!["A".into()], vec![friction], [0.1, 1.0, 1.0], 1e-12)
     }
 
     fn seen(penetration: f64, in_contact: bool) -> Observation {
@@ -248,6 +296,24 @@ mod tests {
             let found = witness().see(&wrong);
             assert!(matches!(found, Err(Contradiction::OtherSlip { .. })), "{found:?}");
         }
+    }
+
+    #[test]
+    fn friction_beyond_full_friction_is_seen() {
+        let limits = vec![Some(Bounds::Limit(0.1))];
+        let mut witness = Witness::new(vec!["A".into()], limits, [0.1, 1.0, 1.0], 1e-12);
+        let mut at = |tangential_force| {
+            let contact = ClearanceObservation {
+                in_contact: true,
+                normal_force: 100.0,
+                tangential_force,
+                ..ClearanceObservation::default()
+            };
+            witness.see(&Observation { clearances: vec![contact], ..Observation::default() })
+        };
+        assert_eq!(at(-10.0), Ok(()));
+        assert_eq!(at(7.0), Ok(()));
+        assert!(matches!(at(10.1), Err(Contradiction::TooMuchFriction { .. })));
     }
 
     #[test]

@@ -261,7 +261,17 @@ const BAD: &[(&str, &str, &str)] = &[
     (
         "\"ambrosio\"",
         "\"coulomb\"",
-        "joints.A.clearance.friction.law: must be \"ambrosio\", is \"coulomb\"",
+        "joints.A.clearance.friction.law: must be \"ambrosio\" or \"dahl\", is \"coulomb\"",
+    ),
+    (
+        "\"ambrosio\", coefficient = 0.0, v0 = 1e-3, v1 = 1e-2",
+        "\"dahl\", coefficient = 0.1, stiffness = 0.0",
+        "joints.A.clearance.friction.stiffness: must be positive (1/m), is 0.0",
+    ),
+    (
+        "\"ambrosio\", coefficient = 0.0, v0 = 1e-3, v1 = 1e-2",
+        "\"dahl\", coefficient = 0.1",
+        "joints.A.clearance.friction.stiffness: is missing; it must be a number (1/m)",
     ),
     // drives, loads, start
     (

@@ -1,7 +1,7 @@
 //! The equations as the steppers see them: one vector y, one independent variable τ.
 //!
 //! ```text
-//! y = (q, v, cos and sin of the turning frames, offsets, t, σ of each root carried, integrals)
+//! y = (q, v, z, cos and sin of the turning frames, offsets, t, σ of each root carried, integrals)
 //! ```
 //!
 //! While a contact with |δ|^p forces lasts, the solution is not analytic in t at either end of it,
@@ -64,6 +64,7 @@ pub(super) struct Flow<S, Y> {
     /// Right-hand sides evaluated.
     pub evaluations: u64,
     coordinates: usize,
+    inner_states: usize,
     frames: usize,
     integrals: usize,
     roots: Vec<Root<S>>,
@@ -88,6 +89,7 @@ impl<S: Scalar, Y: System<S>> Flow<S, Y> {
         let turn = Turn { cos: S::one(), sin: S::zero() };
         Flow {
             coordinates: system.coordinates(),
+            inner_states: system.inner_states(),
             integrals: system.integrals(),
             frames,
             roots: Vec::new(),
@@ -111,14 +113,14 @@ impl<S: Scalar, Y: System<S>> Flow<S, Y> {
         self.coordinates
     }
 
-    /// Index of the first cosine.
+    /// Index of the first cosine, behind q, v and z.
     pub fn first_turn(&self) -> usize {
-        2 * self.coordinates
+        2 * self.coordinates + self.inner_states
     }
 
     /// Index of the first offset.
     pub fn first_offset(&self) -> usize {
-        2 * (self.coordinates + self.frames)
+        self.first_turn() + 2 * self.frames
     }
 
     /// Index of the time.
@@ -188,14 +190,21 @@ impl<S: Scalar, Y: System<S>> Flow<S, Y> {
 
     /// Sets the offsets from coordinates and turns.
     pub fn reset_offsets(&mut self, y: &mut [S]) {
-        let (n, first) = (self.coordinates, self.first_offset());
+        let first = self.first_offset();
         self.load(y);
         let carried = Some(Carried { turns: &self.turns, offsets: &[] });
-        let state = State { time: y[self.time()], q: &y[..n], v: &y[n..2 * n], carried };
+        let state = State { carried, ..self.state(y) };
         self.system.offsets_at(state, &mut self.offsets);
         for (offset, pair) in self.offsets.iter().zip(y[first..].chunks_exact_mut(2)) {
             pair.copy_from_slice(&[offset.x, offset.y]);
         }
+    }
+
+    /// The state in y, without what is carried.
+    fn state<'a>(&self, y: &'a [S]) -> State<'a, S> {
+        let n = self.coordinates;
+        let (q, v, z) = (&y[..n], &y[n..2 * n], &y[2 * n..self.first_turn()]);
+        State { time: y[self.time()], q, v, z, carried: None }
     }
 
     /// Takes turns and offsets from y.
@@ -213,14 +222,8 @@ impl<S: Scalar, Y: System<S>> Flow<S, Y> {
     pub fn evaluate_without_roots(&mut self, y: &[S]) -> Result<(), Fault> {
         self.evaluations += 1;
         self.load(y);
-        let n = self.coordinates;
-        let (q, v) = (&y[..n], &y[n..2 * n]);
-        let state = State {
-            time: y[self.time()],
-            q,
-            v,
-            carried: Some(Carried { turns: &self.turns, offsets: &self.offsets }),
-        };
+        let carried = Some(Carried { turns: &self.turns, offsets: &self.offsets });
+        let state = State { carried, ..self.state(y) };
         self.system.evaluate(state)
     }
 
@@ -228,15 +231,9 @@ impl<S: Scalar, Y: System<S>> Flow<S, Y> {
     pub fn evaluate(&mut self, y: &[S]) -> Result<(), Fault> {
         self.evaluations += 1;
         self.load(y);
-        let (n, time) = (self.coordinates, y[self.time()]);
-        let (q, v) = (&y[..n], &y[n..2 * n]);
-        self.system.turn_rates(time, v, &mut self.turn_rates);
-        let state = State {
-            time,
-            q,
-            v,
-            carried: Some(Carried { turns: &self.turns, offsets: &self.offsets }),
-        };
+        let carried = Some(Carried { turns: &self.turns, offsets: &self.offsets });
+        let state = State { carried, ..self.state(y) };
+        self.system.turn_rates(state.time, state.v, &mut self.turn_rates);
         if self.roots.is_empty() {
             self.pace = S::one();
             self.system.evaluate(state)?;
@@ -306,10 +303,14 @@ impl<S: Scalar, Y: System<S>> Flow<S, Y> {
         for (i, a) in self.system.accelerations()[..n].iter().enumerate() {
             put(n + i, paced * *a);
         }
+        for (i, rate) in self.system.inner_rates()[..self.inner_states].iter().enumerate() {
+            put(2 * n + i, paced * *rate);
+        }
+        let first = self.first_turn();
         for (j, (turn, rate)) in self.turns.iter().zip(&self.turn_rates).enumerate() {
             let rate = paced * *rate;
-            put(2 * (n + j), -(rate * turn.sin));
-            put(2 * (n + j) + 1, rate * turn.cos);
+            put(first + 2 * j, -(rate * turn.sin));
+            put(first + 2 * j + 1, rate * turn.cos);
         }
         let first = self.first_offset();
         for (j, rate) in self.offset_rates.iter().enumerate() {
@@ -348,14 +349,8 @@ impl<S: Scalar, Y: System<S>> Flow<S, Y> {
     /// Event functions at y, as the system has them.
     pub fn event_values(&mut self, y: &[S]) -> Result<&[S], Fault> {
         self.load(y);
-        let n = self.coordinates;
-        let (q, v) = (&y[..n], &y[n..2 * n]);
-        let state = State {
-            time: y[self.time()],
-            q,
-            v,
-            carried: Some(Carried { turns: &self.turns, offsets: &self.offsets }),
-        };
+        let carried = Some(Carried { turns: &self.turns, offsets: &self.offsets });
+        let state = State { carried, ..self.state(y) };
         self.system.event_values(state, &mut self.values)?;
         Ok(&self.values)
     }

@@ -160,7 +160,8 @@ impl<S: Scalar, Y: System<S>> Explicit<S, Y> {
             Some(Method::RungeKutta) => Stepper::RungeKutta(RungeKutta::new(capacity)),
             _ => Stepper::Extrapolation(Extrapolation::new(capacity, options.tolerance)),
         };
-        let now = Snapshot::new(flow.coordinates(), flow.system.integrals());
+        let now =
+            Snapshot::new(flow.coordinates(), flow.system.inner_states(), flow.system.integrals());
         let point = Point::new(capacity, functions);
         Ok(Explicit {
             stepper,
@@ -226,15 +227,6 @@ impl<S: Scalar, Y: System<S>> Explicit<S, Y> {
         Ok(())
     }
 
-    /// Writes `here` into the snapshot.
-    fn take_snapshot(&mut self) {
-        let (n, y) = (self.flow.coordinates(), &self.here.y);
-        self.now.time = y[self.flow.time()];
-        self.now.q.copy_from_slice(&y[..n]);
-        self.now.v.copy_from_slice(&y[n..2 * n]);
-        self.now.integrals.copy_from_slice(&y[self.flow.controlled()..self.flow.len()]);
-    }
-
     /// Weighs the components for a step from `from`.
     fn weigh(&mut self, length: f64) {
         let (flow, from) = (&self.flow, &self.from);
@@ -273,7 +265,7 @@ impl<S: Scalar, Y: System<S>> Explicit<S, Y> {
         low
     }
 
-    /// Puts q, v, t and the integrals of a snapshot into `here`; where they are those of the last
+    /// Puts q, v, z, t and the integrals of a snapshot into `here`; where they are those of the last
     /// step's end, what rounding left out of them is kept. Returns whether q or t are others.
     fn put(&mut self, now: &Snapshot<S>) -> bool {
         let n = self.flow.coordinates();
@@ -292,6 +284,9 @@ impl<S: Scalar, Y: System<S>> Explicit<S, Y> {
         for i in 0..n {
             set(i, now.q[i]);
             set(n + i, now.v[i]);
+        }
+        for (i, z) in now.z.iter().enumerate() {
+            set(2 * n + i, *z);
         }
         set(time, now.time);
         let first = self.flow.controlled();
@@ -387,11 +382,21 @@ impl<S: Scalar, Y: System<S>> Explicit<S, Y> {
     }
 }
 
-/// Sizes by which errors are weighed: of q and v as the system has them, one for cosines and
+/// Writes a point into a snapshot.
+fn take<S: Scalar, Y: System<S>>(flow: &Flow<S, Y>, point: &Point<S>, at: &mut Snapshot<S>) {
+    let (n, y) = (flow.coordinates(), &point.y);
+    at.time = y[flow.time()];
+    at.q.copy_from_slice(&y[..n]);
+    at.v.copy_from_slice(&y[n..2 * n]);
+    at.z.copy_from_slice(&y[2 * n..flow.first_turn()]);
+    at.integrals.copy_from_slice(&y[flow.controlled()..flow.len()]);
+}
+
+/// Sizes by which errors are weighed: of q, v and z as the system has them, one for cosines and
 /// sines, and for the time the shortest that a typical velocity takes for a typical coordinate.
 fn sizes_of<S: Scalar, Y: System<S>>(flow: &Flow<S, Y>) -> Vec<f64> {
     let (q, v) = flow.system.scales();
-    let mut sizes = [q, v].concat();
+    let mut sizes = [q, v, flow.system.inner_scales()].concat();
     sizes.resize(flow.first_offset(), 1.0);
     // offsets follow the coordinates, whose errors are theirs
     sizes.resize(flow.time(), f64::INFINITY);
@@ -409,7 +414,7 @@ impl<S: Scalar, Y: System<S>> Engine<S> for Explicit<S, Y> {
 
     fn restart(&mut self, now: &Snapshot<S>) -> Result<(), ExplicitError> {
         let finite = |list: &[S]| list.iter().all(|x| x.is_finite());
-        if !(now.time.is_finite() && finite(&now.q) && finite(&now.v)) {
+        if !(now.time.is_finite() && finite(&now.q) && finite(&now.v) && finite(&now.z)) {
             return Err(ExplicitError::NotFinite { time: now.time.to_f64() });
         }
         let goes_on = self.tally.restarts > 0 && now.time == self.now.time;
@@ -463,7 +468,7 @@ impl<S: Scalar, Y: System<S>> Engine<S> for Explicit<S, Y> {
             self.flow.evaluate(&self.here.y).map_err(|fault| self.fault(fault))?;
             self.evaluated_here = true;
         }
-        self.take_snapshot();
+        take(&self.flow, &self.here, &mut self.now);
         self.tally.steps += 1;
         self.count_progress(before, end)?;
         self.tally.events += u64::from(advance == Advance::Event);
@@ -492,7 +497,7 @@ impl<S: Scalar, Y: System<S>> Engine<S> for Explicit<S, Y> {
             return Ok(());
         }
         if time == began {
-            self.take(&self.from, at);
+            take(&self.flow, &self.from, at);
             return Ok(());
         }
         if self.flow.roots().is_empty() {
@@ -551,16 +556,7 @@ impl<S: Scalar, Y: System<S>> Engine<S> for Explicit<S, Y> {
 impl<S: Scalar, Y: System<S>> Explicit<S, Y> {
     /// Writes `probe` into a snapshot.
     fn take_probe(&self, at: &mut Snapshot<S>) {
-        self.take(&self.probe, at);
-    }
-
-    /// Writes a point into a snapshot.
-    fn take(&self, point: &Point<S>, at: &mut Snapshot<S>) {
-        let (n, y) = (self.flow.coordinates(), &point.y);
-        at.time = y[self.flow.time()];
-        at.q.copy_from_slice(&y[..n]);
-        at.v.copy_from_slice(&y[n..2 * n]);
-        at.integrals.copy_from_slice(&y[self.flow.controlled()..self.flow.len()]);
+        take(&self.flow, &self.probe, at);
     }
 
     /// Where in the last step a time lies, as a fraction of its length: from time and pace at

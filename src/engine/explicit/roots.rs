@@ -62,7 +62,7 @@ impl<S: Scalar, Y: System<S>> Explicit<S, Y> {
         }
     }
 
-    /// Changes the roots carried; q, v, t and integrals of `here` stay.
+    /// Changes the roots carried; q, v, z, t and integrals of `here` stay.
     pub(super) fn carry(&mut self, roots: Vec<(Root<S>, S)>) {
         let old = self.flow.controlled()..self.flow.len();
         let integrals: Vec<(S, S)> = old.map(|i| (self.here.y[i], self.here.low[i])).collect();

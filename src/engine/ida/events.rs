@@ -8,8 +8,8 @@
 //! crossed, and nothing is polished. Where the search has to look into a step that turns far, it
 //! goes by panels of a radian.
 
-use super::{Error, Ida, ROUNDINGS_AT_END};
-use crate::dae::{Course, Dae, Direction, State};
+use super::{Error, Ida, ROUNDINGS_AT_END, take};
+use crate::dae::{Course, Dae, Direction};
 use crate::engine::guard::{self, Found, Look};
 
 /// A panel turns no further than this (rad).
@@ -216,12 +216,10 @@ impl<Y: Dae> Ida<Y> {
     /// taken, so that none of them sees an event before it happens.
     fn look(&mut self, k: usize, time: f64) -> Result<Look, Error> {
         self.events.looks += 1;
-        let n = self.now.q.len();
-        let mut y = self.solver.interpolate(time)?[..2 * n].to_vec();
-        let (q, v) = y.split_at_mut(n);
-        let system = self.solver.system();
-        let evaluated = (system.project(time, q, v))
-            .and_then(|_| system.evaluate(State { time, q, v, carried: None }));
+        take(time, self.solver.interpolate(time)?, &mut self.between);
+        let (system, at) = (self.solver.system(), &mut self.between);
+        let evaluated =
+            (system.project(time, &mut at.q, &mut at.v)).and_then(|_| system.evaluate(at.state()));
         evaluated.map_err(|source| Error::System { time, source })?;
         Ok(Look { at: time, course: self.rising_course(k).unwrap_or(Course::NONE) })
     }

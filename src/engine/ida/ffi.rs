@@ -140,7 +140,8 @@ impl<Y: Dae> Solver<Y> {
         max_step: f64,
         stock_vector_operations: bool,
     ) -> Result<Self, Error> {
-        let (unknowns, norm) = (2 * system.coordinates() + system.multipliers(), weights.norm());
+        let differential = 2 * system.coordinates() + system.inner_states();
+        let (unknowns, norm) = (differential + system.multipliers(), weights.norm());
         let size = unknowns as sunindextype;
         let context = new_context()?;
         let y = new_vector(unknowns, &context)?;
@@ -156,7 +157,7 @@ impl<Y: Dae> Solver<Y> {
             let linear_solver = unsafe { SUNLinSol_Dense(y.0, matrix.0, context.0) };
             LinearSolver(made(linear_solver, "a linear solver")?)
         } else {
-            own_linear_solver(&context, &memory, 2 * system.coordinates(), unknowns)?
+            own_linear_solver(&context, &memory, differential, unknowns)?
         };
         let shared = SharedBox(Box::into_raw(Box::new(Shared::new(system, weights))));
         let mut solver =
@@ -568,7 +569,7 @@ unsafe extern "C" fn invert(solver: SUNLinearSolver, matrix: SUNMatrix) -> c_int
 
 /// Solves with the inverse.
 ///
-/// Where c_j has changed since the matrix was inverted, changes of q and v are scaled as IDA would
+/// Where c_j has changed since the matrix was inverted, changes of q, v and z are scaled as IDA would
 /// scale all: by 2/(1 + c_j/c_j⁽⁰⁾). The multipliers are not: theirs follow accelerations, whose
 /// size does not depend on c_j. What IDA's scaling leaves of them no norm sees, and extrapolation
 /// makes it thirty times larger in the next step: they grew to 1e15 until no step was left.

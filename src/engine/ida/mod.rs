@@ -1,7 +1,7 @@
 //! The main engine: SUNDIALS IDA, variable-order variable-step BDF for index-1 DAEs.
 //!
 //! ```text
-//! F(t, y, ẏ) = 0,  y = (q, v, λ)
+//! F(t, y, ẏ) = 0,  y = (q, v, z, λ)
 //! ```
 //!
 //! [`Ida`] is safe to use: what is unsafe is in `ffi.rs`. The settings that let a run at tolerances
@@ -26,7 +26,7 @@ mod tests;
 pub use error::Error;
 pub use tolerance::{AbsoluteTolerance, Norm};
 
-use crate::dae::{Advance, Count, Dae, Engine, Fault, Snapshot, State};
+use crate::dae::{Advance, Count, Dae, Engine, Fault, Snapshot};
 use events::Events;
 use ffi::{Counters, Return, Solver};
 use quadrature::{Quadrature, looks};
@@ -122,6 +122,8 @@ pub struct Ida<Y: Dae> {
     now: Snapshot<f64>,
     /// Where the last step began.
     began: Snapshot<f64>,
+    /// A place within the last step.
+    between: Snapshot<f64>,
     quadrature: Quadrature,
     events: Events,
     fired: Vec<bool>,
@@ -157,8 +159,9 @@ impl<Y: Dae> Ida<Y> {
             options.absolute_tolerance,
             options.norm,
             system.scales(),
+            system.inner_scales(),
         )?;
-        let now = Snapshot::new(system.coordinates(), system.integrals());
+        let now = Snapshot::new(system.coordinates(), system.inner_states(), system.integrals());
         let quadrature = Quadrature::new(system.integrals(), typical_turning(system.scales()));
         let fired = vec![false; system.watches().len()];
         let events = Events::new(fired.len());
@@ -168,6 +171,7 @@ impl<Y: Dae> Ida<Y> {
             options,
             phase: Phase::NotStarted,
             began: now.clone(),
+            between: now.clone(),
             now,
             quadrature,
             events,
@@ -195,17 +199,14 @@ impl<Y: Dae> Ida<Y> {
         self.evaluate()?;
         self.arm();
         self.fired.fill(false);
-        let n = self.now.q.len();
         let (system, now) = (self.solver.system_ref(), &self.now);
         self.quadrature.restart(now.time, system.powers(), &now.integrals);
-        let (accelerations, lambda) = (system.accelerations().to_vec(), system.lambda().to_vec());
+        let values = [&now.q, &now.v, &now.z, system.lambda()].concat();
+        let no_rates = vec![0.0; system.lambda().len()];
+        let rates = [&now.v, system.accelerations(), system.inner_rates(), &no_rates].concat();
         let (y, yp) = self.solver.unknowns_mut();
-        y[..n].copy_from_slice(&now.q);
-        y[n..2 * n].copy_from_slice(&now.v);
-        y[2 * n..].copy_from_slice(&lambda);
-        yp[..n].copy_from_slice(&now.v);
-        yp[n..2 * n].copy_from_slice(&accelerations);
-        yp[2 * n..].fill(0.0);
+        y.copy_from_slice(&values);
+        yp.copy_from_slice(&rates);
         self.earlier += self.solver.counters();
         let shortest = FIRST_STEP_ROUNDINGS * f64::EPSILON * now.time.abs();
         let first = self.options.initial_step * RECOVERY_STEP.powi(self.attempts as i32);
@@ -218,10 +219,8 @@ impl<Y: Dae> Ida<Y> {
 
     /// Evaluates the system at `self.now`.
     fn evaluate(&mut self) -> Result<(), Error> {
-        let Snapshot { time, q, v, .. } = &self.now;
-        let state = State { time: *time, q, v, carried: None };
-        let evaluated = self.solver.system().evaluate(state);
-        evaluated.map_err(|source| Error::System { time: *time, source })
+        let evaluated = self.solver.system().evaluate(self.now.state());
+        evaluated.map_err(|source| Error::System { time: self.now.time, source })
     }
 
     /// One step of IDA to `self.now`, from a state that `self.began` keeps.
@@ -235,11 +234,7 @@ impl<Y: Dae> Ida<Y> {
             self.stop_time = None;
         }
         std::mem::swap(&mut self.began, &mut self.now);
-        let n = self.now.q.len();
-        let y = self.solver.unknowns();
-        self.now.time = time;
-        self.now.q.copy_from_slice(&y[..n]);
-        self.now.v.copy_from_slice(&y[n..2 * n]);
+        take(time, self.solver.unknowns(), &mut self.now);
         self.evaluate()?;
         let event = self.meet_events()?;
         let time = self.now.time;
@@ -271,11 +266,7 @@ impl<Y: Dae> Ida<Y> {
 
     /// Goes back to a time (s) within IDA's last step.
     fn go_back(&mut self, time: f64) -> Result<(), Error> {
-        let n = self.now.q.len();
-        let y = self.solver.interpolate(time)?;
-        self.now.time = time;
-        self.now.q.copy_from_slice(&y[..n]);
-        self.now.v.copy_from_slice(&y[n..2 * n]);
+        take(time, self.solver.interpolate(time)?, &mut self.now);
         self.evaluate()
     }
 
@@ -335,12 +326,10 @@ impl<Y: Dae> Ida<Y> {
 
     /// Integrals (J) over a panel within IDA's last step.
     fn over(&mut self, panel: [f64; 2]) -> Result<Vec<f64>, Error> {
-        let n = self.now.q.len();
         let mut gained = vec![0.0; self.now.integrals.len()];
         for (time, weight) in looks(panel) {
-            let y = self.solver.interpolate(time)?[..2 * n].to_vec();
-            let (q, v) = y.split_at(n);
-            let evaluated = self.solver.system().evaluate(State { time, q, v, carried: None });
+            take(time, self.solver.interpolate(time)?, &mut self.between);
+            let evaluated = self.solver.system().evaluate(self.between.state());
             evaluated.map_err(|source| Error::System { time, source })?;
             let powers = self.solver.system_ref().powers();
             gained.iter_mut().zip(powers).for_each(|(gained, power)| *gained += weight * power);
@@ -359,6 +348,7 @@ impl<Y: Dae> Ida<Y> {
         };
         tangent(&mut now.q, &now.v);
         tangent(&mut now.v, system.accelerations());
+        tangent(&mut now.z, system.inner_rates());
         tangent(&mut now.integrals, system.powers());
         now.time = end;
         self.evaluate()?;
@@ -382,6 +372,7 @@ impl<Y: Dae> Engine<f64> for Ida<Y> {
     /// [`Error::System`] if the system cannot be evaluated at `now`.
     fn restart(&mut self, now: &Snapshot<f64>) -> Result<(), Error> {
         assert_eq!(now.q.len(), self.now.q.len(), "a snapshot of another system");
+        assert_eq!(now.z.len(), self.now.z.len(), "a snapshot of another system");
         assert_eq!(now.integrals.len(), self.now.integrals.len(), "a snapshot of another system");
         self.now.clone_from(now);
         self.begin()
@@ -440,11 +431,7 @@ impl<Y: Dae> Engine<f64> for Ida<Y> {
         } else if self.phase == Phase::Crept {
             between(&self.began, &self.now, time, at);
         } else {
-            let n = self.now.q.len();
-            let y = self.solver.interpolate(time)?;
-            at.time = time;
-            at.q.copy_from_slice(&y[..n]);
-            at.v.copy_from_slice(&y[n..2 * n]);
+            take(time, self.solver.interpolate(time)?, at);
             if self.looks_inside(now - began) {
                 let gained = self.gather(time)?;
                 let sums = self.quadrature.before().iter().zip(gained);
@@ -481,6 +468,17 @@ impl<Y: Dae> Engine<f64> for Ida<Y> {
     }
 }
 
+/// Puts time (s) and q, v, z of y = (q, v, z, λ) into a snapshot.
+fn take(time: f64, y: &[f64], at: &mut Snapshot<f64>) {
+    let (q, rest) = y.split_at(at.q.len());
+    let (v, rest) = rest.split_at(at.v.len());
+    let (z, _) = rest.split_at(at.z.len());
+    at.time = time;
+    at.q.copy_from_slice(q);
+    at.v.copy_from_slice(v);
+    at.z.copy_from_slice(z);
+}
+
 /// Typical rate (rad/s) at which a system of these typical sizes of q and v turns.
 fn typical_turning((coordinates, velocities): (&[f64], &[f64])) -> f64 {
     let rates = coordinates.iter().zip(velocities).map(|(size, rate)| rate / size);
@@ -498,6 +496,7 @@ fn between(from: &Snapshot<f64>, to: &Snapshot<f64>, time: f64, at: &mut Snapsho
     at.time = time;
     mix(&mut at.q, &from.q, &to.q);
     mix(&mut at.v, &from.v, &to.v);
+    mix(&mut at.z, &from.z, &to.z);
     mix(&mut at.integrals, &from.integrals, &to.integrals);
 }
 

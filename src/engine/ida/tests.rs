@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::dae::{Direction, Fault, System, Watch};
-use crate::engine::testing::{Constraint, Formulas, Sample};
+use crate::engine::testing::{Constraint, Formulas, Relaxing, Sample};
 use std::error::Error as _;
 use std::f64::consts::PI;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -14,7 +14,7 @@ fn engine<F: Formulas>(formulas: F) -> Ida<Sample<F>> {
 }
 
 fn snapshot(time: f64, q: &[f64], v: &[f64], integrals: &[f64]) -> Snapshot<f64> {
-    Snapshot { time, q: q.to_vec(), v: v.to_vec(), integrals: integrals.to_vec() }
+    Snapshot { time, q: q.to_vec(), v: v.to_vec(), z: Vec::new(), integrals: integrals.to_vec() }
 }
 
 /// Steps to an end or to the first event.
@@ -88,10 +88,33 @@ fn an_oscillator_follows_its_closed_form_and_its_spring_does_the_work_of_the_pot
 }
 
 #[test]
+fn what_a_force_remembers_follows_its_closed_form_at_steps_and_within() {
+    for norm in [Norm::Ode15s, Norm::Wrms] {
+        let options = Options { norm, ..Options::default() };
+        let mut engine = Ida::new(Relaxing::new(), options).unwrap();
+        let start = Snapshot { z: vec![0.0], ..snapshot(0.0, &[0.0], &[1.0], &[]) };
+        engine.restart(&start).unwrap();
+        let mut at = start.clone();
+        while engine.now().time < 2.0 {
+            engine.step(2.0).unwrap();
+            let (began, now) = (engine.began(), engine.now().time);
+            for time in [began, began + 0.3 * (now - began), now] {
+                engine.within(time, &mut at).unwrap();
+                for (found, exact) in
+                    [at.q[0], at.v[0], at.z[0]].into_iter().zip(Relaxing::at(time))
+                {
+                    assert!((found - exact).abs() < 1e3 * RTOL, "{norm:?} at {time}: {at:?}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
 fn a_step_can_be_read_within_and_meets_its_ends() {
     let omega = 2.0;
     let mut engine = engine(Oscillator::new(omega));
-    let mut at = Snapshot::new(1, 1);
+    let mut at = Snapshot::new(1, 0, 1);
     engine.restart(&snapshot(0.0, &[1.0], &[0.0], &[0.0])).unwrap();
     engine.within(0.0, &mut at).unwrap();
     assert_eq!(&at, engine.now());
@@ -175,7 +198,7 @@ fn a_step_that_ended_at_an_event_can_be_read_within() {
     assert_eq!(advance(&mut engine, 3.0).unwrap(), Advance::Event);
     let (began, now) = (engine.began(), engine.now().clone());
     assert!(now.q[0] <= 0.0, "an event has been crossed: {}", now.q[0]);
-    let mut at = Snapshot::new(1, 1);
+    let mut at = Snapshot::new(1, 0, 1);
     for part in [0.1, 0.5, 0.999] {
         let time = began + part * (now.time - began);
         engine.within(time, &mut at).unwrap();

@@ -18,14 +18,16 @@
 //! through the multipliers a step of length 1/c_j makes of it an error of
 //!
 //! ```text
-//! v:  (Σ |∂v̇/∂q| ε|q| + Σ |∂v̇/∂λ| ε|λ|) / c_j      but at most ε|q| c_j
+//! v:  (Σ |∂v̇/∂q| ε|q| + Σ |∂v̇/∂z| ε|z| + Σ |∂v̇/∂λ| ε|λ|) / c_j      but at most ε|q| c_j
 //! q:  that of v / c_j
+//! z:  ε (Σ |∂ż/∂q| |q| + Σ |∂ż/∂v| |v|) / c_j
 //! ```
 //!
 //! Where a and r|y| ask for less, as for a velocity that dies away under an absolute tolerance of
 //! 1e-20, that error is allowed, and the step counted; else steps would shrink with the velocity.
 
 use super::Error;
+use std::ops::Range;
 
 /// The smallest absolute tolerance: with it, squares of weighted numbers stay below 1e300.
 const SMALLEST_ABSOLUTE: f64 = 1e-100;
@@ -45,34 +47,36 @@ pub enum AbsoluteTolerance {
     /// One number for all coordinates (m, rad) and velocities (m/s, rad/s).
     Scalar(f64),
     /// A hundredth of the relative tolerance times the typical size of each component, from
-    /// [`System::scales`](crate::dae::System::scales).
+    /// [`System::scales`](crate::dae::System::scales) and
+    /// [`System::inner_scales`](crate::dae::System::inner_scales).
     Scaled,
 }
 
-/// Weights of the unknowns (q, v, λ).
+/// Weights of the unknowns (q, v, z, λ).
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Weights {
     relative: f64,
-    /// Of q and v; none for λ.
+    /// Of q, v and z; none for λ.
     absolute: Vec<f64>,
     norm: Norm,
     /// Typical sizes of q.
     sizes: Vec<f64>,
     /// Typical sizes of v.
     speeds: Vec<f64>,
-    /// What rounding makes of q and v in a step.
+    /// What rounding makes of q, v and z in a step.
     floor: Vec<f64>,
     /// How often an error below the floor was asked for.
     floored: u64,
 }
 
 impl Weights {
-    /// Weights for a system with these typical sizes of q and v.
+    /// Weights for a system with these typical sizes of q and v, and of z.
     pub(super) fn new(
         relative: f64,
         absolute: AbsoluteTolerance,
         norm: Norm,
         scales: (&[f64], &[f64]),
+        inner: &[f64],
     ) -> Result<Weights, Error> {
         if !(relative > f64::EPSILON && relative < 1.0) {
             return Err(Error::Option {
@@ -82,7 +86,7 @@ impl Weights {
             });
         }
         let own = scales.0.to_vec();
-        let sizes = scales.0.iter().chain(scales.1);
+        let sizes = scales.0.iter().chain(scales.1).chain(inner);
         let absolute: Vec<f64> = match absolute {
             AbsoluteTolerance::Scalar(a) => sizes.map(|_| a).collect(),
             AbsoluteTolerance::Scaled => sizes.map(|size| 0.01 * relative * size).collect(),
@@ -91,7 +95,7 @@ impl Weights {
             Some(&value) => Err(Error::Option {
                 name: "absolute_tolerance",
                 value,
-                must: "be at least 1e-100 and finite, for every coordinate and velocity",
+                must: "be at least 1e-100 and finite, for every coordinate, velocity and inner state",
             }),
             None => {
                 let floor = vec![0.0; absolute.len()];
@@ -111,15 +115,16 @@ impl Weights {
         self.floor.fill(0.0);
     }
 
-    /// Takes in what rounding makes of a step with c_j (1/s) near the time t (s) and y = (q, v, λ),
-    /// from the Jacobian there, column by column.
+    /// Takes in what rounding makes of a step with c_j (1/s) near the time t (s) and
+    /// y = (q, v, z, λ), from the Jacobian there, column by column.
     pub(super) fn know_rounding(&mut self, t: f64, y: &[f64], cj: f64, columns: &[f64]) {
-        let (size, n) = (y.len(), self.sizes.len());
+        let (size, n, differential) = (y.len(), self.sizes.len(), self.floor.len());
         let (floor_q, floor_v) = self.floor.split_at_mut(n);
         floor_v.fill(0.0);
-        let mut add = |column: usize, rounding: f64| {
-            let entries = &columns[size * column + n..size * column + 2 * n];
-            floor_v.iter_mut().zip(entries).for_each(|(v, entry)| *v += rounding * entry.abs());
+        let mut add = |column: usize, rounding: f64, rows: Range<usize>| {
+            let floor = &mut floor_v[rows.start - n..rows.end - n];
+            let entries = &columns[size * column..][rows];
+            floor.iter_mut().zip(entries).for_each(|(v, entry)| *v += rounding * entry.abs());
         };
         let late = 0.5 * (t.abs().next_up() - t.abs());
         let rounding = |j: usize| {
@@ -127,11 +132,18 @@ impl Weights {
             own.max(late * self.speeds[j])
         };
         for j in 0..n {
-            add(j, rounding(j));
+            add(j, rounding(j), n..differential);
         }
-        for (k, lambda) in y.iter().enumerate().skip(2 * n) {
-            add(k, f64::EPSILON * lambda.abs());
+        if differential > 2 * n {
+            for (j, v) in y.iter().enumerate().take(2 * n).skip(n) {
+                add(j, f64::EPSILON * v.abs(), 2 * n..differential);
+            }
         }
+        for (k, other) in y.iter().enumerate().skip(2 * n) {
+            add(k, f64::EPSILON * other.abs(), n..2 * n);
+        }
+        let (floor_v, floor_z) = floor_v.split_at_mut(n);
+        floor_z.iter_mut().for_each(|z| *z /= cj);
         for (j, (q, v)) in floor_q.iter_mut().zip(floor_v).enumerate() {
             // a step that is long for a stiff contact moves no further than rounding moves q
             *q = (*v / cj / cj).min(rounding(j));
@@ -144,7 +156,7 @@ impl Weights {
         self.norm
     }
 
-    /// Writes the weights at y = (q, v, λ).
+    /// Writes the weights at y = (q, v, z, λ).
     pub(super) fn fill(&mut self, y: &[f64], weights: &mut [f64]) {
         let (differential, algebraic) = weights.split_at_mut(self.absolute.len());
         let mut below = false;
@@ -169,7 +181,7 @@ mod tests {
     use super::*;
 
     fn weights(norm: Norm, absolute: AbsoluteTolerance, y: &[f64]) -> Vec<f64> {
-        let mut weights = Weights::new(1e-6, absolute, norm, (&[2.0], &[300.0])).unwrap();
+        let mut weights = Weights::new(1e-6, absolute, norm, (&[2.0], &[300.0]), &[]).unwrap();
         let mut w = vec![f64::NAN; y.len()];
         weights.fill(y, &mut w);
         w
@@ -187,7 +199,7 @@ mod tests {
     fn no_tolerance_asks_for_less_than_rounding_makes() {
         for norm in [Norm::Ode15s, Norm::Wrms] {
             let tiny = AbsoluteTolerance::Scalar(1e-20);
-            let mut weights = Weights::new(1e-12, tiny, norm, (&[2.0], &[300.0])).unwrap();
+            let mut weights = Weights::new(1e-12, tiny, norm, (&[2.0], &[300.0]), &[]).unwrap();
             let (y, cj, stiffness) = ([-3.0, 1e-15], 1e6, 1e8);
             let mut w = [f64::NAN; 2];
             weights.fill(&y, &mut w);
@@ -241,7 +253,7 @@ mod tests {
     #[test]
     fn tolerances_that_mean_nothing_are_refused() {
         let refused = |relative, absolute| {
-            Weights::new(relative, absolute, Norm::Wrms, (&[1.0], &[0.0])).is_err()
+            Weights::new(relative, absolute, Norm::Wrms, (&[1.0], &[0.0]), &[]).is_err()
         };
         assert!(refused(0.0, AbsoluteTolerance::Scalar(1e-20)));
         assert!(refused(f64::NAN, AbsoluteTolerance::Scalar(1e-20)));

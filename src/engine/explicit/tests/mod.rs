@@ -16,9 +16,10 @@ fn started<S: Scalar, Y: System<S>>(
     q: Vec<S>,
     v: Vec<S>,
 ) -> Explicit<S, Y> {
+    let z = vec![S::zero(); system.inner_states()];
     let integrals = vec![S::zero(); system.integrals()];
     let mut engine = Explicit::new(system, options).unwrap();
-    engine.restart(&Snapshot { time: S::zero(), q, v, integrals }).unwrap();
+    engine.restart(&Snapshot { time: S::zero(), q, v, z, integrals }).unwrap();
     engine
 }
 

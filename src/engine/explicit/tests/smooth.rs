@@ -3,6 +3,7 @@
 use super::systems::{Oscillators, Pendulum};
 use super::*;
 use crate::dae::Direction;
+use crate::engine::testing::Relaxing;
 use crate::scalar::F256;
 
 /// Largest error of an oscillator of ω = 2 after some periods, sampled within every step.
@@ -78,4 +79,37 @@ fn a_pendulum_swings_as_the_mean_says() {
         let error = half_period::<F256>(cartesian, options(1e-60, 1e-3));
         assert!(error < 1e-58, "cartesian {cartesian}: {error:e}");
     }
+}
+
+/// Largest error of a force that remembers over two seconds, sampled within every step.
+fn relaxing_error<S: Scalar>(options: Options) -> f64 {
+    let mut engine = started(Relaxing::<S>::new(), options, vec![S::zero()], vec![S::one()]);
+    let mut at = engine.now().clone();
+    let mut error: f64 = 0.0;
+    let end = number::<S>("2");
+    while engine.now().time < end {
+        engine.step(end).unwrap();
+        let (began, now) = (engine.began(), engine.now().time);
+        for part in ["0", "0.3", "0.8", "1"] {
+            let time = (began + (now - began) * number(part)).min(now);
+            engine.within(time, &mut at).unwrap();
+            let exact = Relaxing::at(time);
+            for (found, exact) in [at.q[0], at.v[0], at.z[0]].into_iter().zip(exact) {
+                error = error.max((found - exact).abs().to_f64());
+            }
+        }
+        let here = engine.now().clone();
+        engine.restart(&here).unwrap();
+    }
+    error
+}
+
+#[test]
+fn what_a_force_remembers_keeps_its_digits_in_both_arithmetics() {
+    for tolerance in [1e-8, 1e-13] {
+        let error = relaxing_error::<f64>(options(tolerance, 1e-3));
+        assert!(error < 30.0 * tolerance, "at {tolerance:e}: {error:e}");
+    }
+    let error = relaxing_error::<F256>(options(1e-50, 1e-3));
+    assert!(error < 1e-48, "{error:e}");
 }
