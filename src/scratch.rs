@@ -100,7 +100,7 @@ fn a_course_of_one_s_own_drives() {
 }
 
 #[test]
-fn a_damping_law_of_one_s_own_rebounds_as_its_weight_says() {
+fn laws_of_one_s_own_rebound_and_rub_as_they_say() {
     let text = r#"
         [ground]
         points = { O = [0.0, 0.0] }
@@ -115,6 +115,7 @@ fn a_damping_law_of_one_s_own_rebounds_as_its_weight_says() {
         bearing_radius = 0.01
         radial = 0.001
         normal = { law = "straight", restitution = 0.6, stiffness = 1e10 }
+        friction = { law = "thick", coefficient = 0.1, slip = 1.0 }
         [start]
         ball = { x = 0.0, y = 0.0, velocity_x = 1.0, fixed = true }
         [run]
@@ -130,5 +131,11 @@ fn a_damping_law_of_one_s_own_rebounds_as_its_weight_says() {
             let ratio = pair[1].impact_rate / pair[0].impact_rate;
             assert!((ratio - rebound(0.4)).abs() < 1e-8, "{ratio}");
         }
+        // a spinning ball is slowed down by an impact along its normal
+        let spin = text.replace("velocity_x = 1.0", "velocity_x = 1.0, angular_velocity = 100.0");
+        let kept = run(&spin, engine);
+        let [first, last] = [kept.samples[0].bodies[0], kept.samples[1].bodies[0]];
+        assert!(last.angular_velocity.abs() < 0.99 * first.angular_velocity);
+        assert!(kept.samples[1].energy.residual.abs() < 1e-9);
     }
 }

@@ -1,18 +1,17 @@
 //! Case file to [`Description`]: which keys describe ground, bodies, joints, drives, loads, start.
 //!
-//! Joints, courses of drives and loads say themselves which keys they take; of contact and friction
-//! laws the keys stand here.
+//! Joints, courses of drives, loads and friction laws say themselves which keys they take; of the
+//! normal force the keys stand here.
 
-use super::table_reader::{ReadKind, TableReader};
+use super::table_reader::TableReader;
 use crate::contact::Damping;
 use crate::model::{
-    BodyDescription, ClearanceDescription, Description, DriveDescription, FrictionDescription,
-    JointDescription, LoadDescription, NamedPoint, NormalDescription, StartDescription,
-    StiffnessDescription, Tension,
+    BodyDescription, ClearanceDescription, Description, DriveDescription, JointDescription,
+    LoadDescription, NamedPoint, NormalDescription, StartDescription, StiffnessDescription,
+    Tension,
 };
-use crate::{course, joint, load};
-
-const FRICTION_LAWS: [ReadKind<FrictionDescription>; 2] = [("ambrosio", ambrosio), ("dahl", dahl)];
+use crate::parameter::Values;
+use crate::{course, friction, joint, load};
 
 const STIFFNESSES: [(&str, StiffnessDescription); 2] = [
     ("hertz-printed", StiffnessDescription::HertzPrinted),
@@ -91,23 +90,8 @@ fn normal(keys: &mut TableReader) -> NormalDescription {
     }
 }
 
-fn friction(keys: &mut TableReader) -> Option<FrictionDescription> {
-    keys.variant("law", &FRICTION_LAWS, None)
-}
-
-fn ambrosio(keys: &mut TableReader) -> FrictionDescription {
-    FrictionDescription::Ambrosio {
-        coefficient: keys.required("coefficient", ""),
-        v0: keys.required("v0", "m/s"),
-        v1: keys.required("v1", "m/s"),
-    }
-}
-
-fn dahl(keys: &mut TableReader) -> FrictionDescription {
-    FrictionDescription::Dahl {
-        coefficient: keys.required("coefficient", ""),
-        stiffness: keys.required("stiffness", "1/m"),
-    }
+fn friction(keys: &mut TableReader) -> Option<Values> {
+    keys.part("law", friction::KINDS, None)
 }
 
 fn drive(name: &str, keys: &mut TableReader) -> Option<DriveDescription> {

@@ -3,20 +3,23 @@
 
 use crate::contact::Damping;
 use crate::parameter::{Key, Kind, Otherwise, Range, Takes};
-use crate::{course, joint, load};
+use crate::{course, friction, joint, load};
 use serde_json::{Map, Value, json};
 
 /// The schema of what does not come in kinds.
 const REST: &str = include_str!("schema.json");
 
+const FRICTION: &str = "Law of the tangential force; left out: none";
+
 /// The JSON Schema (draft 07) of case files.
 pub fn schema() -> Value {
     let mut schema: Value = serde_json::from_str(REST).unwrap_or_default();
     let kinds = [
-        ("joint", "A joint", one_of(joint::KINDS, |kind| joint_keys(kind))),
-        ("drive", "A drive", one_of(course::KINDS, |_| drive_keys())),
-        ("load", "A load", one_of(load::KINDS, |_| Map::new())),
-        ("course", "A course of time", one_of(course::KINDS, |_| Map::new())),
+        ("joint", "A joint", one_of("kind", joint::KINDS, |kind| joint_keys(kind))),
+        ("drive", "A drive", one_of("kind", course::KINDS, |_| drive_keys())),
+        ("load", "A load", one_of("kind", load::KINDS, |_| Map::new())),
+        ("course", "A course of time", one_of("kind", course::KINDS, |_| Map::new())),
+        ("friction", FRICTION, one_of("law", friction::KINDS, |_| Map::new())),
     ];
     for (name, about, alternatives) in kinds {
         schema["$defs"][name] = json!({ "description": about, "oneOf": alternatives });
@@ -50,13 +53,17 @@ fn drive_keys() -> Map<String, Value> {
     Map::from_iter([("joint".to_owned(), joint)])
 }
 
-/// One schema for each kind, with keys before its own.
-fn one_of(kinds: &[&Kind], before: impl Fn(&Kind) -> Map<String, Value>) -> Vec<Value> {
+/// One schema for each kind, which a key chooses, with keys before its own.
+fn one_of(
+    chooses: &str,
+    kinds: &[&Kind],
+    before: impl Fn(&Kind) -> Map<String, Value>,
+) -> Vec<Value> {
     let schema_of = |kind: &&Kind| {
         let mut keys = Map::new();
-        keys.insert("kind".into(), json!({ "const": kind.word, "description": kind.title }));
+        keys.insert(chooses.into(), json!({ "const": kind.word, "description": kind.title }));
         let others = before(kind);
-        let mut required = vec!["kind"];
+        let mut required = vec![chooses];
         required.extend(others.keys().filter(|key| *key == "joint").map(|_| "joint"));
         keys.extend(others.clone());
         for key in kind.keys {
@@ -121,7 +128,7 @@ pub fn tables() -> String {
     kinds(&mut text, "Joints: `[joints.NAME]`", &defs["joint"], joint::KINDS);
     table(&mut text, "Clearance: `[joints.NAME.clearance]`", "", &defs["clearance"]);
     table(&mut text, "Normal force: `normal` of a clearance", "", &defs["normal"]);
-    table(&mut text, "Friction: `friction` of a clearance", "", &defs["friction"]);
+    kinds(&mut text, "Friction: `friction` of a clearance", &defs["friction"], friction::KINDS);
     kinds(&mut text, "Drives: `[drives.NAME]`", &defs["drive"], course::KINDS);
     kinds(&mut text, "Loads: `[loads.NAME]`", &defs["load"], load::KINDS);
     kinds(&mut text, "Courses: values that change with time", &defs["course"], course::KINDS);

@@ -43,9 +43,6 @@ impl Findings {
     }
 }
 
-/// A kind of joint, load, law, and what reads the keys that it takes.
-pub(super) type ReadKind<T> = (&'static str, fn(&mut TableReader) -> T);
-
 /// What a value of a case file can be read as.
 pub(super) trait FromItem: Sized {
     /// In words, before the unit.
@@ -355,18 +352,6 @@ impl<'d> TableReader<'d, '_> {
             self.complain(key, format!("must be {expected}, is {found}{near}"));
         }
         found.map(|(_, value)| value.clone())
-    }
-
-    /// What the reader that a word chooses makes of this table; `None` after a complaint.
-    pub fn variant<T>(
-        &mut self,
-        key: &'static str,
-        kinds: &[ReadKind<T>],
-        default: Option<&'static str>,
-    ) -> Option<T> {
-        let chosen = self.choice(key, kinds, default);
-        self.any_key |= chosen.is_none(); // which keys an unknown kind takes is not known
-        chosen.map(|read| read(self))
     }
 
     /// The part whose kind a word chooses, with the values of the keys that its kind takes; `None`

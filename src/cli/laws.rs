@@ -2,6 +2,8 @@
 
 use super::Failure;
 use crate::contact::{Damping, Impact};
+use crate::friction;
+use crate::parameter::{Kind, Otherwise};
 use crate::post::table;
 use serde_json::{Value, json};
 
@@ -29,7 +31,7 @@ enum Wrong {
     Restitution(f64),
 }
 
-/// Prints the laws of the normal force and what each really gives.
+/// Prints the laws of normal force and friction, and what each really gives.
 pub(super) fn laws(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(wrong) = arguments.restitution.iter().find(|e| !(**e > 0.0 && **e <= 1.0)) {
         return Err(Failure::input(Wrong::Restitution(*wrong)));
@@ -39,18 +41,27 @@ pub(super) fn laws(arguments: &Arguments) -> Result<(), Failure> {
         None => laws.map(|(_, law)| law).collect(),
         Some(name) => laws.filter(|(word, _)| word == name).map(|(_, law)| law).collect(),
     };
-    if let (Some(name), true) = (&arguments.name, laws.is_empty()) {
+    let is_asked = |kind: &&&Kind| arguments.name.as_ref().is_none_or(|name| kind.word == name);
+    let frictions: Vec<&Kind> = friction::KINDS.iter().filter(is_asked).copied().collect();
+    if let (Some(name), true) = (&arguments.name, laws.is_empty() && frictions.is_empty()) {
         let words = Damping::ALL.iter().map(|(word, _)| *word);
+        let words = words.chain(friction::KINDS.iter().map(|kind| kind.word));
         let near = crate::model::did_you_mean(name, words);
         return Err(Failure::input(Wrong::Name { name: name.clone(), near }));
     }
     if arguments.json {
-        let all: Vec<Value> = laws.iter().map(|law| told(*law, &arguments.restitution)).collect();
-        return super::print_json(format_args!("{:#}\n", Value::from(all)));
+        let normal = laws.iter().map(|law| told(*law, &arguments.restitution));
+        let friction = frictions.iter().map(|kind| told_friction(kind));
+        let all = json!({
+            "normal": normal.collect::<Vec<_>>(),
+            "friction": friction.collect::<Vec<_>>(),
+        });
+        return super::print_json(format_args!("{all:#}\n"));
     }
-    match laws[..] {
-        [law] if arguments.name.is_some() => super::print(in_full(law, &arguments.restitution)),
-        _ => super::print(menu(&laws, &arguments.restitution)),
+    match (&laws[..], &frictions[..]) {
+        ([law], []) => super::print(in_full(*law, &arguments.restitution)),
+        ([], [friction]) => super::print(friction_in_full(friction)),
+        _ => super::print(menu(&laws, &frictions, &arguments.restitution)),
     }
 }
 
@@ -77,8 +88,38 @@ fn told(law: Damping, restitutions: &[f64]) -> Value {
     })
 }
 
-/// The laws in a table: the rebound of each at each restitution.
-fn menu(laws: &[Damping], restitutions: &[f64]) -> String {
+fn told_friction(kind: &Kind) -> Value {
+    let keys = kind
+        .keys
+        .iter()
+        .map(|key| json!({ "key": key.name, "unit": key.unit, "about": key.about }));
+    json!({
+        "law": kind.word,
+        "title": kind.title,
+        "source": kind.source,
+        "keys": keys.collect::<Vec<_>>(),
+    })
+}
+
+/// One friction law with all that it says of itself.
+fn friction_in_full(kind: &Kind) -> String {
+    let heads = ["key", "unit", "meaning", "if left out"].map(str::to_owned).to_vec();
+    let row = |key: &crate::parameter::Key| {
+        let otherwise = match key.otherwise {
+            Otherwise::Required => "an error",
+            Otherwise::Default(value) => value,
+            Otherwise::Absent => "",
+        };
+        [key.name, key.unit, key.about, otherwise].map(str::to_owned).to_vec()
+    };
+    let rows = kind.keys.iter().map(row).collect();
+    let source = if kind.source.is_empty() { String::new() } else { format!("{}\n", kind.source) };
+    let (word, title, table) = (kind.word, kind.title, table(heads, rows, 4));
+    format!("{word}: {title}\n{source}\n{table}\n\n{}\n", kind.example)
+}
+
+/// The laws in tables: the rebound of each at each restitution, and the friction laws.
+fn menu(laws: &[Damping], frictions: &[&Kind], restitutions: &[f64]) -> String {
     let mut heads = vec!["law".to_owned(), "damping weight".to_owned()];
     heads.extend(restitutions.iter().map(|e| format!("e = {e}")));
     let row = |law: &Damping| {
@@ -89,10 +130,14 @@ fn menu(laws: &[Damping], restitutions: &[f64]) -> String {
         row
     };
     let rows = laws.iter().map(row).collect();
+    let friction_heads = vec!["law".to_owned(), "friction".to_owned()];
+    let friction_rows =
+        frictions.iter().map(|kind| vec![kind.word.to_owned(), kind.title.to_owned()]);
+    let frictions = table(friction_heads, friction_rows.collect(), 2);
     format!(
         "Normal force F = K δⁿ [1 + a δ̇/δ̇⁽⁻⁾]: what one impact really rebounds at, over its speed, for a\n\
-         nominal restitution e, whatever stiffness, exponent, mass and speed\n\n{}\n\nfreeplay laws NAME \
-         shows one in full; friction: docs/cases.md\n",
+         nominal restitution e, whatever stiffness, exponent, mass and speed\n\n{}\n\nFriction, any with any normal \
+         force\n\n{frictions}\n\nfreeplay laws NAME shows one in full\n",
         table(heads, rows, 2)
     )
 }

@@ -16,8 +16,43 @@
 //! kink at each edge: an integration of high order must restart there, and therefore the law is
 //! evaluated by region, each of which goes on smoothly beyond its edges.
 
-use super::{Branch, FrictionLaw, Sloped};
+use super::{Branch, COEFFICIENT, Ends, FrictionLaw, Sloped};
+use crate::parameter::{Key, Kind, Otherwise, Range, Takes, Values};
 use crate::scalar::Scalar;
+
+/// The kind and its keys.
+pub const KIND: Kind = Kind {
+    word: "ambrosio",
+    title: "Coulomb friction with a ramp: none below v0, full above v1",
+    source: "Ambrósio 2003, in Virtual Nonlinear Multibody Systems, 57–81; the paper's eq. 10 and 11",
+    example: r#"[joints.A.clearance]
+friction = { law = "ambrosio", coefficient = 0.1, v0 = 1e-3, v1 = 1e-2 }"#,
+    keys: &[
+        COEFFICIENT,
+        Key {
+            name: "v0",
+            takes: Takes::Number(Range::NotNegative),
+            unit: "m/s",
+            otherwise: Otherwise::Required,
+            about: "slip below which there is no friction",
+        },
+        Key {
+            name: "v1",
+            takes: Takes::Number(Range::Positive),
+            unit: "m/s",
+            otherwise: Otherwise::Required,
+            about: "slip above which friction is full",
+        },
+    ],
+    also: Some(rises),
+};
+
+/// The ramp has a width.
+fn rises(values: &Values) -> Option<(&'static str, String)> {
+    let (v0, v1) = (values.decimal("v0")?, values.decimal("v1")?);
+    (v1.to_f64() <= v0.to_f64())
+        .then(|| ("v1", format!("must be greater than v0, {v0} (m/s), is {v1}")))
+}
 
 /// Which piece of the law is in force.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -96,13 +131,20 @@ impl Ramp {
 }
 
 impl<S: Scalar> Ambrosio<S> {
+    /// The law that these values describe.
+    pub fn new(values: &Values, ends: &Ends<S>) -> Self {
+        let number = |key| values.number(key);
+        let hysteresis = ends.hysteresis.to_f64();
+        Ambrosio::with(number("coefficient"), number("v0"), number("v1"), hysteresis)
+    }
+
     /// Friction with coefficient c_f and ramp from v0 to v1 (m/s), 0 ≤ v0 < v1.
     ///
     /// A slip that decays onto an edge of the ramp from above must not cross it again and again
     /// on rounding errors: on the way down an edge lies lower by `hysteresis` · v1. Region
     /// and neighbour differ there by the order of `hysteresis`, for a time of the same order, so
     /// the trajectory is changed by its square.
-    pub fn new(coefficient: S, v0: S, v1: S, hysteresis: f64) -> Self {
+    fn with(coefficient: S, v0: S, v1: S, hysteresis: f64) -> Self {
         let hysteresis = S::from_f64(hysteresis) * v1;
         Ambrosio { coefficient, v0, v1, inverse_width: S::one() / (v1 - v0), hysteresis }
     }
@@ -221,7 +263,7 @@ mod tests {
     use proptest::prelude::*;
 
     fn law() -> Ambrosio<f64> {
-        Ambrosio::new(0.1, 1e-3, 1e-2, 1e-6)
+        Ambrosio::with(0.1, 1e-3, 1e-2, 1e-6)
     }
 
     proptest! {
@@ -289,7 +331,7 @@ mod tests {
             assert_eq!(law().region(slip, -3.0), below, "{slip}");
             assert_eq!(law().region(slip, 3.0), above, "{slip}");
         }
-        let ramp = Ambrosio::new(0.1, 0.0, 1e-2, 1e-6);
+        let ramp = Ambrosio::with(0.1, 0.0, 1e-2, 1e-6);
         for slip in [-1e-18, 0.0, 1e-18] {
             assert_eq!(ramp.region(slip, -3.0), RampBackward);
             assert_eq!(ramp.region(slip, 3.0), RampForward);
@@ -320,7 +362,7 @@ mod tests {
 
     #[test]
     fn a_ramp_through_zero_has_no_still_region() {
-        let law = Ambrosio::new(0.1, 0.0, 1e-2, 1e-6);
+        let law = Ambrosio::with(0.1, 0.0, 1e-2, 1e-6);
         for off in [-1e-8, 0.0, 1e-8] {
             assert_eq!(law.region_beyond(RampForward, false, off), RampBackward);
             assert_eq!(law.region_beyond(RampBackward, true, off), RampForward);

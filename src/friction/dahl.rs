@@ -30,8 +30,29 @@
 //! All work of the friction counts as dissipated: with a normal force that changes no bristle holds
 //! an energy of its own, and what is dissipated may fall while bristles spring back.
 
-use super::{Branch, FrictionLaw, Sloped};
+use super::{Branch, COEFFICIENT, Ends, FrictionLaw, Sloped};
+use crate::parameter::{Key, Kind, Otherwise, Range, Takes, Values};
 use crate::scalar::Scalar;
+
+/// The kind and its keys.
+pub const KIND: Kind = Kind {
+    word: "dahl",
+    title: "bristles that bend over the way slipped; a joint may rest on them",
+    source: "Dahl 1968, The Aerospace Corporation, TOR-0158(3107-18)-1; 1976, AIAA J. 14(12):1675–1682, doi 10.2514/3.61511",
+    example: r#"[joints.A.clearance]
+friction = { law = "dahl", coefficient = 0.1, stiffness = 1e4 }"#,
+    keys: &[
+        COEFFICIENT,
+        Key {
+            name: "stiffness",
+            takes: Takes::Number(Range::Positive),
+            unit: "1/m",
+            otherwise: Otherwise::Required,
+            about: "stiffness σ0 of the bristles over the normal force",
+        },
+    ],
+    also: None,
+};
 
 const BACKWARD: Branch = Branch(0);
 const FORWARD: Branch = Branch(1);
@@ -50,12 +71,18 @@ pub struct Dahl<S> {
 }
 
 impl<S: Scalar> Dahl<S> {
+    /// The law that these values describe.
+    pub fn new(values: &Values, ends: &Ends<S>) -> Self {
+        let hysteresis = ends.hysteresis.to_f64();
+        Dahl::with(values.number("coefficient"), values.number("stiffness"), hysteresis)
+    }
+
     /// Friction with coefficient c_f and stiffness σ0 (1/m), both positive.
     ///
     /// A branch is left this much `hysteresis`, over a millimetre a second, beyond a slip of zero:
     /// a joint at rest must not change its branch with each rounding error. Branch and neighbour
     /// differ there by as little, for a time as short, so the trajectory is changed by its square.
-    pub fn new(coefficient: S, stiffness: S, hysteresis: f64) -> Self {
+    fn with(coefficient: S, stiffness: S, hysteresis: f64) -> Self {
         let hysteresis = S::from_f64(hysteresis * SLIP_SCALE);
         Dahl { coefficient, stiffness, inverse_reach: stiffness / coefficient, hysteresis }
     }
@@ -114,7 +141,7 @@ mod tests {
     const REACH: f64 = 0.1 / 2e4;
 
     fn law<S: Scalar>() -> Dahl<S> {
-        Dahl::new(S::ratio(1, 10), S::ratio(20_000, 1), 1e-7)
+        Dahl::with(S::ratio(1, 10), S::ratio(20_000, 1), 1e-7)
     }
 
     proptest! {

@@ -5,15 +5,31 @@
 //! an inner state z, with a rate of its own. Signs are the same everywhere: F_T acts on the journal
 //! along t, and opposes a positive slip where it is negative.
 //!
-//! A new law is a file here, a `mod` line, and its name in the list of [`Friction`].
+//! A new law is a file here and its line in the list of kinds.
 
-mod ambrosio;
-mod dahl;
-
-pub use ambrosio::{Ambrosio, Ramp};
-pub use dahl::Dahl;
-
+use crate::parameter::{Key, Otherwise, Range, Takes, Values, kinds};
 use crate::scalar::Scalar;
+
+pub use ambrosio::Ramp;
+
+kinds! { $
+    /// A friction law of any kind.
+    Friction, each_friction:
+    Ambrosio in ambrosio,
+    Dahl in dahl,
+    LuGre in lugre,
+    Tanh in tanh,
+    BrownMcPhee in brown_mcphee,
+    #[cfg(test)]
+    Scratch in scratch,
+}
+
+/// What a law is made of beside its values.
+#[derive(Debug, Clone, Copy)]
+pub struct Ends<S> {
+    /// A branch is left this much beyond its edge, over the slip that is of order one.
+    pub hysteresis: S,
+}
 
 /// A branch of a law: its number in the order of the slip, backward first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -75,63 +91,69 @@ pub trait FrictionLaw<S: Scalar> {
     fn limit(&self) -> S;
 }
 
-/// The laws, and which of them answers.
-macro_rules! laws {
-    ($($law:ident),+) => {
-        /// A friction law and its parameters.
-        #[derive(Debug, Clone, Copy)]
-        pub enum Friction<S> {
-            $(#[doc = concat!("See [`", stringify!($law), "`].")] $law($law<S>)),+
-        }
+impl<S: Scalar> FrictionLaw<S> for Friction<S> {
+    #[inline(always)]
+    fn ratio(&self, branch: Branch, slip: S, inner: S) -> Sloped<S> {
+        each_friction!(self, law => law.ratio(branch, slip, inner))
+    }
 
-        $(impl<S> From<$law<S>> for Friction<S> {
-            fn from(law: $law<S>) -> Self {
-                Friction::$law(law)
-            }
-        })+
+    fn branch(&self, slip: S, acceleration: S) -> Branch {
+        each_friction!(self, law => law.branch(slip, acceleration))
+    }
 
-        impl<S: Scalar> FrictionLaw<S> for Friction<S> {
-            #[inline(always)]
-            fn ratio(&self, branch: Branch, slip: S, inner: S) -> Sloped<S> {
-                match self { $(Friction::$law(law) => law.ratio(branch, slip, inner)),+ }
-            }
+    #[inline(always)]
+    fn edges(&self, branch: Branch) -> (S, S) {
+        each_friction!(self, law => law.edges(branch))
+    }
 
-            fn branch(&self, slip: S, acceleration: S) -> Branch {
-                match self { $(Friction::$law(law) => law.branch(slip, acceleration)),+ }
-            }
+    fn beyond(&self, branch: Branch, upward: bool, slip: S) -> Branch {
+        each_friction!(self, law => law.beyond(branch, upward, slip))
+    }
 
-            #[inline(always)]
-            fn edges(&self, branch: Branch) -> (S, S) {
-                match self { $(Friction::$law(law) => law.edges(branch)),+ }
-            }
+    #[inline(always)]
+    fn slip_scale(&self) -> S {
+        each_friction!(self, law => law.slip_scale())
+    }
 
-            fn beyond(&self, branch: Branch, upward: bool, slip: S) -> Branch {
-                match self { $(Friction::$law(law) => law.beyond(branch, upward, slip)),+ }
-            }
+    fn inner_scale(&self) -> Option<f64> {
+        each_friction!(self, law => law.inner_scale())
+    }
 
-            #[inline(always)]
-            fn slip_scale(&self) -> S {
-                match self { $(Friction::$law(law) => law.slip_scale()),+ }
-            }
+    #[inline(always)]
+    fn inner_rate(&self, branch: Branch, slip: S, inner: S) -> Sloped<S> {
+        each_friction!(self, law => law.inner_rate(branch, slip, inner))
+    }
 
-            fn inner_scale(&self) -> Option<f64> {
-                match self { $(Friction::$law(law) => law.inner_scale()),+ }
-            }
+    fn ramp(&self) -> Option<Ramp> {
+        each_friction!(self, law => law.ramp())
+    }
 
-            #[inline(always)]
-            fn inner_rate(&self, branch: Branch, slip: S, inner: S) -> Sloped<S> {
-                match self { $(Friction::$law(law) => law.inner_rate(branch, slip, inner)),+ }
-            }
-
-            fn ramp(&self) -> Option<Ramp> {
-                match self { $(Friction::$law(law) => law.ramp()),+ }
-            }
-
-            fn limit(&self) -> S {
-                match self { $(Friction::$law(law) => law.limit()),+ }
-            }
-        }
-    };
+    fn limit(&self) -> S {
+        each_friction!(self, law => law.limit())
+    }
 }
 
-laws! { Ambrosio, Dahl }
+/// The one branch of a law that has no edge.
+const WHOLE: Branch = Branch(0);
+
+/// The edges of a branch that has none (m/s).
+fn endless<S: Scalar>() -> (S, S) {
+    let far = S::from_f64(f64::INFINITY);
+    (-far, far)
+}
+
+/// The key that all laws have.
+const COEFFICIENT: Key = Key {
+    name: "coefficient",
+    takes: Takes::Number(Range::NotNegative),
+    unit: "",
+    otherwise: Otherwise::Required,
+    about: "friction coefficient c_f of sliding; zero means no friction",
+};
+
+/// Friction of rest is no less than that of sliding.
+fn rest_holds(values: &Values) -> Option<(&'static str, String)> {
+    let (sliding, rest) = (values.decimal("coefficient")?, values.decimal("static")?);
+    (rest.to_f64() < sliding.to_f64())
+        .then(|| ("static", format!("must be at least the coefficient, {sliding}, is {rest}")))
+}

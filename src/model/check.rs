@@ -4,8 +4,8 @@
 use super::normal_law;
 use super::{
     BodyDescription, ClearanceDescription, Complaint, Complaints, Description, DriveDescription,
-    FrictionDescription, JointDescription, KeyPath, LoadDescription, NamedPoint, NormalDescription,
-    OfMaterials, StartDescription, StiffnessDescription, shortened,
+    JointDescription, KeyPath, LoadDescription, NamedPoint, NormalDescription, OfMaterials,
+    StartDescription, StiffnessDescription, shortened,
 };
 use crate::joint::{PRISMATIC, REVOLUTE};
 use crate::parameter::{Key, Takes, Value, Values};
@@ -108,7 +108,7 @@ fn check_joint(complaints: &mut Complaints, description: &Description, joint: &J
     let key = KeyPath::new(["joints", &joint.name]);
     check_part(complaints, description, &key, &joint.part);
     if let Some(clearance) = &joint.clearance {
-        check_clearance(complaints, &key.key("clearance"), clearance);
+        check_clearance(complaints, description, &key.key("clearance"), clearance);
     }
 }
 
@@ -240,7 +240,12 @@ fn find_point<'a>(
     Err(format!("{owner} has no point {:?}{near}", shortened(name)))
 }
 
-fn check_clearance(complaints: &mut Complaints, key: &KeyPath, clearance: &ClearanceDescription) {
+fn check_clearance(
+    complaints: &mut Complaints,
+    description: &Description,
+    key: &KeyPath,
+    clearance: &ClearanceDescription,
+) {
     let (bearing, radial) = (&clearance.bearing_radius, &clearance.radial);
     let bearing_right = complaints.require_positive(key.key("bearing_radius"), bearing, "m");
     let radial_right = complaints.require_positive(key.key("radial"), radial, "m");
@@ -261,7 +266,7 @@ fn check_clearance(complaints: &mut Complaints, key: &KeyPath, clearance: &Clear
         check_stiffness(complaints, key.key("normal").key("stiffness"), clearance);
     }
     if let Some(friction) = &clearance.friction {
-        check_friction(complaints, &key.key("friction"), friction);
+        check_part(complaints, description, &key.key("friction"), friction);
     }
 }
 
@@ -333,29 +338,6 @@ fn check_material(
         }
         (None, Some(_)) => complaints.add(key, "is not used where stiffness is a number"),
         _ => {}
-    }
-}
-
-fn check_friction(complaints: &mut Complaints, key: &KeyPath, friction: &FrictionDescription) {
-    let not_negative = "zero or positive";
-    let mut require_coefficient = |coefficient| {
-        complaints.require(key.key("coefficient"), coefficient, "", not_negative, |c| c >= 0.0)
-    };
-    let (v0, v1) = match friction {
-        FrictionDescription::Ambrosio { coefficient, v0, v1 } => {
-            require_coefficient(coefficient);
-            (v0, v1)
-        }
-        FrictionDescription::Dahl { coefficient, stiffness } => {
-            require_coefficient(coefficient);
-            complaints.require_positive(key.key("stiffness"), stiffness, "1/m");
-            return;
-        }
-    };
-    let v0_right = complaints.require(key.key("v0"), v0, "m/s", not_negative, |v| v >= 0.0);
-    let v1_right = complaints.require_positive(key.key("v1"), v1, "m/s");
-    if v0_right && v1_right && v1.to_f64() <= v0.to_f64() {
-        complaints.add(key.key("v1"), format!("must be greater than v0, {v0} (m/s), is {v1}"));
     }
 }
 

@@ -82,7 +82,7 @@ pub struct ClearanceDescription {
     /// Largest penetration that the law is believed for, as a share of the journal's radius.
     pub maximum_penetration: Decimal,
     /// Law of the tangential force; `None` without friction.
-    pub friction: Option<FrictionDescription>,
+    pub friction: Option<Values>,
 }
 
 /// What happens where a contact law gives a tensile force (key `tension`).
@@ -129,27 +129,6 @@ pub enum StiffnessDescription {
     HertzInternal,
     /// K itself (N/mⁿ).
     Number(Decimal),
-}
-
-/// A friction law and its parameters.
-#[derive(Debug, Clone, PartialEq)]
-pub enum FrictionDescription {
-    /// `ambrosio`: the paper's eq. 10 and 11.
-    Ambrosio {
-        /// Friction coefficient c_f; zero means no friction.
-        coefficient: Decimal,
-        /// Slip below which there is no friction (m/s).
-        v0: Decimal,
-        /// Slip above which friction is full (m/s).
-        v1: Decimal,
-    },
-    /// `dahl`: bristles that bend.
-    Dahl {
-        /// Friction coefficient c_f; zero means no friction.
-        coefficient: Decimal,
-        /// Stiffness of the bristles over the normal force (1/m).
-        stiffness: Decimal,
-    },
 }
 
 /// A drive.

@@ -16,7 +16,7 @@ pub use description::*;
 use crate::clearance::Clearance;
 use crate::contact::{NormalLaw, stiffness};
 use crate::course::Course;
-use crate::friction::{Ambrosio, Dahl, Friction};
+use crate::friction::{self, Friction};
 use crate::joint::{self, Pair, Relation};
 use crate::load::{self, Load};
 use crate::parameter::{Takes, Value, Values};
@@ -349,19 +349,10 @@ fn normal_law<S: Scalar>(normal: &NormalDescription, bearing: S, journal: S) -> 
 }
 
 /// The law, or nothing where its coefficient is zero.
-fn friction_law<S: Scalar>(friction: &FrictionDescription) -> Option<Friction<S>> {
-    let hysteresis = 10.0 * S::EPSILON.sqrt();
-    let (FrictionDescription::Ambrosio { coefficient, .. }
-    | FrictionDescription::Dahl { coefficient, .. }) = friction;
-    let coefficient: S = coefficient.value();
-    (coefficient > S::zero()).then(|| match friction {
-        FrictionDescription::Ambrosio { v0, v1, .. } => {
-            Ambrosio::new(coefficient, v0.value(), v1.value(), hysteresis).into()
-        }
-        FrictionDescription::Dahl { stiffness, .. } => {
-            Dahl::new(coefficient, stiffness.value(), hysteresis).into()
-        }
-    })
+fn friction_law<S: Scalar>(friction: &Values) -> Option<Friction<S>> {
+    let hysteresis = S::from_f64(10.0 * S::EPSILON.sqrt());
+    let coefficient: S = friction.number("coefficient");
+    (coefficient > S::zero()).then(|| Friction::new(friction, &friction::Ends { hysteresis }))?
 }
 
 fn start<S: Scalar>(description: &Description, frame: &Frame<'_>, body: &str) -> Start<S> {

@@ -261,7 +261,7 @@ const BAD: &[(&str, &str, &str)] = &[
     (
         "\"ambrosio\"",
         "\"coulomb\"",
-        "joints.A.clearance.friction.law: must be \"ambrosio\" or \"dahl\", is \"coulomb\"",
+        "joints.A.clearance.friction.law: must be {frictions}, is \"coulomb\"",
     ),
     (
         "\"ambrosio\", coefficient = 0.0, v0 = 1e-3, v1 = 1e-2",
@@ -401,6 +401,7 @@ fn with_words(expected: &str) -> String {
     let of = |kinds: &[&crate::parameter::Kind]| words(kinds.iter().map(|k| k.word).collect());
     let laws = Damping::ALL.iter().map(|(word, _)| *word).collect();
     let expected = expected.replace("{joints}", &of(crate::joint::KINDS));
+    let expected = expected.replace("{frictions}", &of(crate::friction::KINDS));
     expected.replace("{loads}", &of(crate::load::KINDS)).replace("{laws}", &words(laws))
 }
 
