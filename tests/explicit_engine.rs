@@ -5,7 +5,7 @@
 mod simulated;
 
 use freeplay::clearance::{EventSlot, Mode};
-use freeplay::dae::{Advance, Engine, Snapshot, State, System};
+use freeplay::dae::{Advance, Engine, Snapshot, System};
 use freeplay::engine::explicit::{Explicit, Options};
 use freeplay::mechanism::Mechanism;
 use freeplay::model::Model;
