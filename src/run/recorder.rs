@@ -10,7 +10,7 @@ pub enum EventKind {
     ContactBegins = 0,
     /// A contact ends.
     ContactEnds = 1,
-    /// The slip passes an edge of the friction law's ramp.
+    /// The slip passes an edge of the friction law.
     FrictionKink = 2,
     /// The contact law begins to pull, or ends it.
     Tension = 3,
