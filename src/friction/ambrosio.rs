@@ -17,9 +17,10 @@
 //! evaluated by region, each of which goes on smoothly beyond its edges.
 
 use crate::scalar::Scalar;
+use serde::{Deserialize, Serialize};
 
 /// Which piece of the law is in force.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum SlipRegion {
     /// v_T ≤ −v1: full friction, slip backward.
     Backward,

@@ -116,7 +116,7 @@ pub(super) struct Witness {
     rate: f64,
     slip: f64,
     /// Largest energy or work seen (J).
-    energy: f64,
+    pub energy: f64,
 }
 
 impl Witness {
