@@ -157,7 +157,8 @@ fn open(
         force = true;
     }
     // what the run itself has left, interrupted or failed, makes room for it
-    force |= there.is_some_and(|there| there.text("case_toml") == Some(&case.text));
+    let own = |there: &ResultFile| there.text("case_toml") == Some(&case.text);
+    force |= there.is_some_and(|there| own(&there) && !there.is_complete());
     Segmented::resume(output, header, force, &inputs).map(Some).map_err(not_gone_on)
 }
 

@@ -233,9 +233,10 @@ impl Segmented {
     }
 }
 
-/// Whether a result file is the whole of the run of a case.
+/// Whether a result file is the whole of the run of a case by this program.
 pub fn is_whole(file: &ResultFile, case_text: &str) -> bool {
-    file.is_complete() && file.text("case_toml") == Some(case_text)
+    let ours = !matches!(Mark::of(file), Err(Error::OtherProgram { .. }));
+    ours && file.is_complete() && file.text("case_toml") == Some(case_text)
 }
 
 /// Removes what is left of the segments of an output.

@@ -4,6 +4,7 @@
 use super::desk::{Desk, Said, case, ran, signal};
 use super::{EIO, ENOSPC, faults};
 use freeplay::record::{Dimension, ResultFile};
+use hdf5::types::VarLenUnicode;
 use nix::sys::signal::Signal;
 use std::process::Stdio;
 use std::time::Duration;
@@ -195,6 +196,15 @@ fn segments_are_result_files_for_every_tool() {
     assert_eq!(ends, [1e-3, 2e-3]);
 }
 
+/// Puts another checkpoint into a file.
+fn put(file: &hdf5::File, text: &str) {
+    file.delete_attr("checkpoint").unwrap();
+    let text: VarLenUnicode = text.parse().unwrap();
+    let attribute = file.new_attr::<VarLenUnicode>().create("checkpoint").unwrap();
+    attribute.write_scalar(&text).unwrap();
+    file.flush().unwrap();
+}
+
 #[test]
 fn a_run_is_not_gone_on_with_by_another_case_or_program() {
     let desk = Desk::new();
@@ -219,15 +229,8 @@ fn a_run_is_not_gone_on_with_by_another_case_or_program() {
     // another program
     let file = hdf5::File::open_rw(desk.path("a.h5.segments/000001.h5")).unwrap();
     let mark = desk.open("a.h5.segments/000001.h5").text("checkpoint").unwrap().to_owned();
-    let put = |text: &str| {
-        file.delete_attr("checkpoint").unwrap();
-        let text: hdf5::types::VarLenUnicode = text.parse().unwrap();
-        let attribute = file.new_attr::<hdf5::types::VarLenUnicode>().create("checkpoint").unwrap();
-        attribute.write_scalar(&text).unwrap();
-        file.flush().unwrap();
-    };
     let resume = [&first[..], &["--resume"]].concat();
-    put(&mark.replace("freeplay ", "freeplay 99."));
+    put(&file, &mark.replace("freeplay ", "freeplay 99."));
     let said = desk.run(&resume);
     said.assert_code(2);
     assert!(said.errors.contains("was written by freeplay 99."), "{said:#?}");
@@ -242,7 +245,7 @@ fn a_run_is_not_gone_on_with_by_another_case_or_program() {
         (mark.replace("next_sample", "next_simple"), 4),
     ] {
         assert_ne!(wrong, mark);
-        put(&wrong);
+        put(&file, &wrong);
         let said = desk.run(&resume);
         assert!(said.code == Some(code) && !said.errors.contains("panicked"), "{said:#?}");
         let _ = std::fs::remove_file(desk.path("a.h5"));
@@ -255,8 +258,18 @@ fn a_run_is_not_gone_on_with_by_another_case_or_program() {
     assert!(said.errors.contains("000002.h5 is missing"), "{said:#?}");
     std::fs::remove_file(desk.path("a.h5.segments/000003.h5")).unwrap();
     // told so, it begins anew
-    desk.run(&[&run(&a, "a.h5", &[key])[..], &["--force"]].concat()).assert_code(0);
+    let anew = run(&a, "a.h5", &[key]);
+    desk.run(&[&anew[..], &["--force"]].concat()).assert_code(0);
     assert_eq!(desk.files(), ["a.h5"]);
+    // a result that another program has made is not the whole of it, and stays unless told
+    let file = hdf5::File::open_rw(desk.path("a.h5")).unwrap();
+    let mark = desk.open("a.h5").text("checkpoint").unwrap().replace("freeplay ", "freeplay 99.");
+    put(&file, &mark);
+    drop(file);
+    let again = desk.run(&[&anew[..], &["--resume"]].concat());
+    assert!(again.assert_code(3).errors.contains("a.h5 exists"), "{again:#?}");
+    let again = desk.run(&[&anew[..], &["--resume", "--force"]].concat());
+    assert!(!again.assert_code(0).out.contains("complete already"), "{again:#?}");
 }
 
 #[test]
@@ -295,11 +308,17 @@ fn what_needs_checkpoints_says_so() {
 fn a_run_that_is_asked_to_stop_can_be_taken_up() {
     let desk = Desk::new();
     let a = case("four-bar-a");
-    desk.run(&run(&a, "whole.h5", &["run.duration=0.06"])).assert_code(0);
-    let stopped = run(&a, "a.h5", &["run.duration=0.06"]);
+    desk.run(&run(&a, "whole.h5", &["run.duration=0.12"])).assert_code(0);
+    let stopped = run(&a, "a.h5", &["run.duration=0.12"]);
     let mut command = desk.command(&stopped);
     let child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
     super::desk::wait_for(|| desk.path("a.h5.segments/000002.h5").exists());
+    // nobody else writes it meanwhile
+    for option in ["--resume", "--force"] {
+        let second = desk.run(&[&stopped[..], &[option]].concat());
+        second.assert_code(3);
+        assert!(second.errors.contains("a.h5 is being written by process"), "{second:#?}");
+    }
     signal(&child, Signal::SIGTERM);
     let said = Said::of(child.wait_with_output().unwrap(), Duration::ZERO);
     said.assert_code(143);
