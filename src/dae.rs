@@ -17,7 +17,8 @@
 //! that [`Watch::power`] tells of.
 
 use crate::plane::Vector;
-use crate::scalar::Scalar;
+use crate::scalar::{Scalar, bits};
+use serde::{Deserialize, Serialize};
 use std::error::Error;
 
 /// Why a system could not be evaluated.
@@ -264,17 +265,23 @@ pub enum Advance {
 }
 
 /// q, v, z and the integrals at one time.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(bound(serialize = "S: Scalar", deserialize = "S: Scalar"))]
 pub struct Snapshot<S> {
     /// Time (s).
+    #[serde(with = "bits")]
     pub time: S,
     /// Coordinates (m, rad).
+    #[serde(with = "bits::list")]
     pub q: Vec<S>,
     /// Velocities (m/s, rad/s).
+    #[serde(with = "bits::list")]
     pub v: Vec<S>,
     /// Inner states, each in its own unit.
+    #[serde(with = "bits::list")]
     pub z: Vec<S>,
     /// Integrals since the run began (J).
+    #[serde(with = "bits::list")]
     pub integrals: Vec<S>,
 }
 

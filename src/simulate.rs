@@ -7,10 +7,14 @@ use crate::engine::ida::{self, Ida};
 use crate::mechanism::{BodyObservation, Mechanism};
 use crate::model::{Complaint, Complaints, KeyPath, Model};
 use crate::record::{Attribute, Header};
-use crate::run::{self, Recorder, RulingCounts, Schedule, Watcher};
+use crate::run::{
+    self, Checkpoint, Checkpoints, Kept, Reached, Recorder, RulingCounts, Schedule, Stretch,
+    Watcher,
+};
 use crate::scalar::{Dual, F256, Scalar};
 use std::convert::Infallible;
 use std::error::Error as StdError;
+use std::ops::ControlFlow;
 use std::path::PathBuf;
 
 /// Why a simulation did not finish.
@@ -33,6 +37,12 @@ pub enum Error<R: StdError + 'static> {
         /// Where the run stood (s).
         time: f64,
     },
+    /// Whoever keeps the checkpoints asked to stop at one.
+    #[error("stopped at the checkpoint at t = {time:e} s")]
+    Stopped {
+        /// Where it is (s).
+        time: f64,
+    },
 }
 
 impl Error<Infallible> {
@@ -41,6 +51,7 @@ impl Error<Infallible> {
         match self {
             Error::Failed { case, source } => Error::Failed { case, source },
             Error::Interrupted { time } => Error::Interrupted { time },
+            Error::Stopped { time } => Error::Stopped { time },
             Error::Recorder(never) => match never {},
         }
     }
@@ -61,6 +72,7 @@ pub struct Simulation<'a> {
     case: &'a Case,
     mechanism: Mechanism<f64>,
     schedule: Schedule,
+    from: Option<String>,
 }
 
 impl<'a> Simulation<'a> {
@@ -79,7 +91,7 @@ impl<'a> Simulation<'a> {
         if !complaints.is_empty() {
             return Err(case.reject(complaints));
         }
-        Ok(Simulation { case, mechanism, schedule })
+        Ok(Simulation { case, mechanism, schedule, from: None })
     }
 
     /// The assembled mechanism.
@@ -99,6 +111,12 @@ impl<'a> Simulation<'a> {
         self
     }
 
+    /// The same simulation, from a checkpoint on: the text that a recorder was given there.
+    pub fn from_checkpoint(mut self, kept: String) -> Self {
+        self.from = Some(kept);
+        self
+    }
+
     /// Simulates. What is recorded until an error stays recorded; `statistics` are told in either
     /// case.
     ///
@@ -106,26 +124,30 @@ impl<'a> Simulation<'a> {
     /// See [`Error`].
     pub fn run<R: Recorder>(self, recorder: &mut R, watch: Watcher<'_>) -> Ran<R> {
         let solver = &self.case.plan.solver;
-        let Simulation { case, mechanism, schedule } = self;
+        let Simulation { case, mechanism, schedule, from } = self;
+        let interval = case.plan.checkpoint_interval.as_ref();
+        let task = Task {
+            case,
+            schedule: &schedule,
+            tolerance: solver.relative_tolerance,
+            checkpoints: interval.map(|every| Checkpoints::new(&case.plan.duration, every)),
+            from: from.as_deref(),
+        };
         match (solver.engine, solver.precision) {
-            _ if is_kinematic(&mechanism) => {
-                run_kinematic(case, mechanism, &schedule, recorder, watch)
-            }
+            _ if is_kinematic(&mechanism) => run_kinematic(&task, mechanism, recorder, watch),
             (EngineName::Ida, _) => {
-                let engine = Ida::new(mechanism, ida_options(solver));
-                carry(case, engine, &schedule, solver.relative_tolerance, recorder, watch)
+                let make = |mechanism| Ida::new(mechanism, ida_options(solver));
+                carry(&task, mechanism, make, recorder, watch)
             }
             (EngineName::Explicit, Precision::Double) => {
-                let options = explicit_options(solver, solver.relative_tolerance);
-                let engine = Explicit::new(mechanism, options);
-                carry(case, engine, &schedule, solver.relative_tolerance, recorder, watch)
+                carry_explicitly(&task, mechanism, recorder, watch)
             }
-            (EngineName::Explicit, Precision::Octuple) => match assemble(case) {
+            (EngineName::Explicit, Precision::Octuple) => match assemble::<F256>(case) {
                 Ok(mechanism) => {
-                    let tolerance = solver.reference_tolerance;
-                    run_reference(case, mechanism, &schedule, tolerance, recorder, watch)
+                    let task = Task { tolerance: solver.reference_tolerance, ..task };
+                    carry_explicitly(&task, mechanism, recorder, watch)
                 }
-                Err(source) => failed::<R>(case, source),
+                Err(source) => (Statistics::default(), Err(failed(case, source))),
             },
         }
     }
@@ -204,7 +226,8 @@ pub fn ideal_case(case: &Case) -> Result<Case, case::Error> {
     }
 }
 
-/// Runs a case on the explicit engine in 71-digit arithmetic, at a tolerance of its own.
+/// Runs a case on the explicit engine in 71-digit arithmetic, at a tolerance of its own and without
+/// checkpoints.
 pub fn run_reference<R: Recorder>(
     case: &Case,
     mechanism: Mechanism<F256>,
@@ -213,11 +236,11 @@ pub fn run_reference<R: Recorder>(
     recorder: &mut R,
     watch: Watcher<'_>,
 ) -> Ran<R> {
+    let task = Task { case, schedule, tolerance, checkpoints: None, from: None };
     if is_kinematic(&mechanism) {
-        return run_kinematic(case, mechanism, schedule, recorder, watch);
+        return run_kinematic(&task, mechanism, recorder, watch);
     }
-    let engine = Explicit::new(mechanism, explicit_options(&case.plan.solver, tolerance));
-    carry(case, engine, schedule, tolerance, recorder, watch)
+    carry_explicitly(&task, mechanism, recorder, watch)
 }
 
 /// Carries a tangent along: the explicit engine in dual numbers over the arithmetic `S`, whose
@@ -235,15 +258,13 @@ pub fn run_tangent<S: Scalar, R: Recorder>(
         disturbed.map_err(|complaints| case.reject(complaints))?;
         Ok(mechanism)
     });
+    let task = Task { case, schedule, tolerance, checkpoints: None, from: None };
     match mechanism {
         Ok(mechanism) if is_kinematic(&mechanism) => {
-            run_kinematic(case, mechanism, schedule, recorder, watch)
+            run_kinematic(&task, mechanism, recorder, watch)
         }
-        Ok(mechanism) => {
-            let engine = Explicit::new(mechanism, explicit_options(&case.plan.solver, tolerance));
-            carry(case, engine, schedule, tolerance, recorder, watch)
-        }
-        Err(source) => failed::<R>(case, source),
+        Ok(mechanism) => carry_explicitly(&task, mechanism, recorder, watch),
+        Err(source) => (Statistics::default(), Err(failed(case, source))),
     }
 }
 
@@ -252,23 +273,47 @@ fn is_kinematic<S: Scalar>(mechanism: &Mechanism<S>) -> bool {
     mechanism.freedoms() == 0 && mechanism.modes().is_empty()
 }
 
+/// What is to be run.
+#[derive(Clone, Copy)]
+struct Task<'a> {
+    case: &'a Case,
+    schedule: &'a Schedule,
+    /// Relative tolerance of the engine.
+    tolerance: f64,
+    checkpoints: Option<Checkpoints>,
+    /// The checkpoint that it goes on from.
+    from: Option<&'a str>,
+}
+
 fn run_kinematic<S: Scalar, R: Recorder>(
-    case: &Case,
-    mut mechanism: Mechanism<S>,
-    schedule: &Schedule,
+    task: &Task<'_>,
+    mechanism: Mechanism<S>,
     recorder: &mut R,
     watch: Watcher<'_>,
 ) -> Ran<R> {
-    let ran = run::kinematic(&mut mechanism, schedule, recorder, watch);
-    finish(case, Vec::new(), ran)
+    in_stretches(task, &mechanism, recorder, |stretch, recorder| {
+        let mut mechanism = mechanism.clone();
+        let ran = run::kinematic(&mut mechanism, task.schedule, stretch, recorder, watch);
+        (Vec::new(), ran.map_err(|error| told(task.case, error)))
+    })
 }
 
-/// Runs an engine, if it could be made.
+fn carry_explicitly<S: Scalar, R: Recorder>(
+    task: &Task<'_>,
+    mechanism: Mechanism<S>,
+    recorder: &mut R,
+    watch: Watcher<'_>,
+) -> Ran<R> {
+    let options = explicit_options(&task.case.plan.solver, task.tolerance);
+    let make = |mechanism| Explicit::new(mechanism, options);
+    carry(task, mechanism, make, recorder, watch)
+}
+
+/// Runs an engine, a new one from each checkpoint on, if it can be made.
 fn carry<S, E, R>(
-    case: &Case,
-    engine: Result<E, E::Error>,
-    schedule: &Schedule,
-    tolerance: f64,
+    task: &Task<'_>,
+    mechanism: Mechanism<S>,
+    make: impl Fn(Mechanism<S>) -> Result<E, E::Error>,
     recorder: &mut R,
     watch: Watcher<'_>,
 ) -> Ran<R>
@@ -277,42 +322,79 @@ where
     E: Engine<S, System = Mechanism<S>>,
     R: Recorder,
 {
-    match engine {
+    let Task { case, schedule, tolerance, .. } = *task;
+    in_stretches(task, &mechanism, recorder, |stretch, recorder| match make(mechanism.clone()) {
         Ok(mut engine) => {
-            let ran = run::run(&mut engine, schedule, tolerance, recorder, watch);
-            finish(case, engine.counts(), ran)
+            let ran = run::stretch(&mut engine, schedule, stretch, tolerance, recorder, watch);
+            (engine.counts(), ran.map_err(|error| told(case, error)))
         }
-        Err(source) => failed::<R>(case, source),
+        Err(source) => (Vec::new(), Err(failed(case, source))),
+    })
+}
+
+/// What the engine of a stretch counted, and what the stretch has come to.
+type Leg<S, R> = (Vec<Count>, Result<Reached<S>, Error<<R as Recorder>::Error>>);
+
+/// Runs from checkpoint to checkpoint, each stretch from what is kept at the last alone.
+fn in_stretches<S: Scalar, R: Recorder>(
+    task: &Task<'_>,
+    mechanism: &Mechanism<S>,
+    recorder: &mut R,
+    mut leg: impl FnMut(&Stretch<'_, S>, &mut R) -> Leg<S, R>,
+) -> Ran<R> {
+    let from = task.from.map(|text| Checkpoint::from_text(text, mechanism)).transpose();
+    let mut from = match from {
+        Ok(from) => from,
+        Err(source) => return (Statistics::default(), Err(failed(task.case, source))),
+    };
+    loop {
+        let number = from.as_ref().map_or(1, |kept| kept.number() + 1);
+        let until = task.checkpoints.and_then(|checkpoints| checkpoints.time(number));
+        let (mut engine, reached) = leg(&Stretch { from: from.as_ref(), until }, recorder);
+        let before = from.iter().flat_map(Checkpoint::work);
+        engine.iter_mut().zip(before).for_each(|(count, before)| count.value += before);
+        let kept = match reached {
+            Ok(Reached::Checkpoint(kept)) => kept,
+            Ok(Reached::End(counts)) => return (statistics(engine, counts), Ok(())),
+            Err(error) => return (statistics(engine, RulingCounts::default()), Err(error)),
+        };
+        let kept = kept.with(number, engine.iter().map(|count| count.value).collect());
+        let time = kept.time().to_f64();
+        match recorder.checkpoint(&Kept { number, time, text: kept.to_text() }) {
+            Ok(ControlFlow::Continue(())) => from = Some(kept),
+            stopped => {
+                let error = stopped.map_or_else(Error::Recorder, |_| Error::Stopped { time });
+                return (statistics(engine, RulingCounts::default()), Err(error));
+            }
+        }
     }
 }
 
-/// The outcome of a simulation that could not begin.
-fn failed<R: Recorder>(case: &Case, source: impl StdError + Send + Sync + 'static) -> Ran<R> {
-    let error = Error::Failed { case: case.name.clone(), source: Box::new(source) };
-    (Statistics::default(), Err(error))
+/// The error of a simulation that could not begin.
+fn failed<R: StdError>(case: &Case, source: impl StdError + Send + Sync + 'static) -> Error<R> {
+    Error::Failed { case: case.name.clone(), source: Box::new(source) }
 }
 
-/// Statistics and outcome of a run, whatever engine it had.
-fn finish<E, R>(
-    case: &Case,
-    engine: Vec<Count>,
-    ran: Result<RulingCounts, run::Error<E, R>>,
-) -> (Statistics, Result<(), Error<R>>)
+/// The error of a simulation whose run has this one.
+fn told<E, R>(case: &Case, error: run::Error<E, R>) -> Error<R>
 where
     E: StdError + Send + Sync + 'static,
     R: StdError + Send + Sync + 'static,
 {
-    let counts = ran.as_ref().copied().unwrap_or_default();
+    match error {
+        run::Error::Recorder(source) => Error::Recorder(source),
+        run::Error::Interrupted { time } => Error::Interrupted { time },
+        error => failed(case, error),
+    }
+}
+
+/// Statistics of a run, whatever engine it had.
+fn statistics(engine: Vec<Count>, counts: RulingCounts) -> Statistics {
     let rulings = vec![
         Count { name: "minimum_impact_rate", value: counts.slow_approaches },
         Count { name: "tension", value: counts.tensions },
     ];
-    let outcome = ran.map(|_| ()).map_err(|error| match error {
-        run::Error::Recorder(source) => Error::Recorder(source),
-        run::Error::Interrupted { time } => Error::Interrupted { time },
-        failed => Error::Failed { case: case.name.clone(), source: Box::new(failed) },
-    });
-    (Statistics { engine, rulings }, outcome)
+    Statistics { engine, rulings }
 }
 
 /// How the explicit engine is to solve, from the plan of a case.

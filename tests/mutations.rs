@@ -165,7 +165,7 @@ fn no_case_file_is_too_much() {
     }
     let texts = texts();
     let mut random = fastrand::Rng::with_seed(16);
-    let (mut sound, all) = (0, mutations(4000));
+    let (mut sound, all) = (0, mutations(14_000));
     for _ in 0..all {
         let mut text = texts[random.usize(..texts.len())].clone();
         for _ in 0..random.u8(1..4) {
@@ -181,7 +181,7 @@ fn no_case_file_is_too_much() {
 fn no_change_from_the_command_line_is_too_much() {
     let texts = texts();
     let mut random = fastrand::Rng::with_seed(17);
-    for _ in 0..mutations(2000) {
+    for _ in 0..mutations(4500) {
         let text = &texts[random.usize(..texts.len())];
         let keyed: Vec<&str> = text.lines().filter(|line| line.contains('=')).collect();
         let line = keyed[random.usize(..keyed.len())];

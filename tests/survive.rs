@@ -4,6 +4,8 @@
 
 #[path = "survive/desk.rs"]
 mod desk;
+#[path = "survive/segments.rs"]
+mod segments;
 
 use desk::{Desk, Said, case, ran, signal, wait_for};
 use freeplay::record::{DATASETS, Dimension};
@@ -185,6 +187,27 @@ fn a_run_is_complete_only_if_every_write_has_arrived() {
         desk.file("old.h5", "old");
         let calls = fail_each_call(&desk, &library, &run, &["old.h5"], fault, || {
             contents(&desk, "old.h5") == good
+        });
+        assert!(calls > 20, "{calls}");
+    }
+}
+
+#[test]
+fn a_certificate_is_whole_or_not_there() {
+    let desk = Desk::new();
+    let library = faults(&desk);
+    let reference = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/certified/pendulum.h5");
+    let pendulum = case("pendulum");
+    let certify = ["certify", &pendulum, "--reference", reference, "--until", "0.1", "--quiet"];
+    let certify = [&certify[..], &["-o", "a.h5", "--force"]].concat();
+    desk.run(&certify).assert_code(0);
+    let good = contents(&desk, "a.h5");
+    for fault in [(EIO, false), (ENOSPC, true)] {
+        desk.file("a.h5", "old");
+        let calls = fail_each_call(&desk, &library, &certify, &["a.h5"], fault, || {
+            // the seal is over what the table of datasets has not, too
+            let sealed = desk.open("a.h5").seal().unwrap() == freeplay::record::Seal::Whole;
+            sealed && contents(&desk, "a.h5") == good
         });
         assert!(calls > 20, "{calls}");
     }

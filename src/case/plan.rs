@@ -7,6 +7,9 @@ use crate::scalar::Decimal;
 /// Rows of samples that a run may write at most.
 const MOST_SAMPLES: f64 = 1e8;
 
+/// Checkpoints that a run may have at most.
+const MOST_CHECKPOINTS: f64 = 1e4;
+
 /// Smallest relative tolerance of an engine that computes in doubles.
 const SMALLEST_RELATIVE_TOLERANCE: f64 = 1e-15;
 
@@ -26,6 +29,8 @@ pub struct Plan {
     pub sample_interval: Decimal,
     /// Where samples are taken.
     pub sampling: Sampling,
+    /// Time between checkpoints (s); `None` without any.
+    pub checkpoint_interval: Option<Decimal>,
     /// How it is solved.
     pub solver: SolverPlan,
 }
@@ -118,17 +123,20 @@ impl NormName {
 impl Plan {
     /// Reads the keys `run` and `solver` of a case's root.
     pub(super) fn read(root: &mut TableReader) -> Plan {
-        let (duration, sample_interval, sampling) = root.table("run", |keys| {
-            (
-                keys.required("duration", "s"),
-                keys.required("sample_interval", "s"),
-                keys.choice("sampling", &Sampling::ALL, Some("uniform")),
-            )
-        });
+        let (duration, sample_interval, sampling, checkpoint_interval) =
+            root.table("run", |keys| {
+                (
+                    keys.required("duration", "s"),
+                    keys.required("sample_interval", "s"),
+                    keys.choice("sampling", &Sampling::ALL, Some("uniform")),
+                    keys.optional("checkpoint_interval", "s"),
+                )
+            });
         Plan {
             duration,
             sample_interval,
             sampling: sampling.unwrap_or(Sampling::Uniform),
+            checkpoint_interval,
             solver: root.table_of_defaults("solver", SolverPlan::read),
         }
     }
@@ -137,6 +145,7 @@ impl Plan {
     pub(super) fn check(&self) -> Vec<Complaint> {
         let mut complaints = Complaints::default();
         self.check_samples(&mut complaints);
+        self.check_checkpoints(&mut complaints);
         self.solver.check_tolerances(&mut complaints);
         self.solver.check_steps(&mut complaints, self.first_sample());
         complaints.into_vec()
@@ -145,6 +154,17 @@ impl Plan {
     /// Time of the first sample behind the start (s).
     fn first_sample(&self) -> f64 {
         self.sample_interval.to_f64().min(self.duration.to_f64())
+    }
+
+    fn check_checkpoints(&self, complaints: &mut Complaints) {
+        let Some(interval) = &self.checkpoint_interval else { return };
+        let key = KeyPath::new(["run", "checkpoint_interval"]);
+        let many = self.duration.to_f64() / interval.to_f64();
+        if complaints.require_positive(key.clone(), interval, "s") && many > MOST_CHECKPOINTS {
+            let limit = format!("at most {MOST_CHECKPOINTS:e} are kept, a file each");
+            let many = format!("a run of {} s would have {many:.3e} checkpoints", self.duration);
+            complaints.add(key, format!("is too small (s), {interval}: {many}, {limit}"));
+        }
     }
 
     fn check_samples(&self, complaints: &mut Complaints) {

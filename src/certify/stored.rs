@@ -3,7 +3,6 @@
 use super::{Certificate, Claim, Growth, Reference};
 use crate::case::{self, Case};
 use crate::digits::{Parts, Scales, Sizes};
-use crate::mechanism::{BodyObservation, ClearanceObservation, JointObservation, Observation};
 use crate::record::{Attribute, Dimension, ResultFile, Seal, Series, Values};
 use crate::run::Trajectory;
 use crate::simulate::assemble;
@@ -191,7 +190,7 @@ pub(super) fn read(case: &Case, file: &ResultFile) -> Result<Reference, NotARefe
     let clearances = (0..file.clearances().len())
         .map(|k| file.number(&format!("scale_clearance_{k}")).unwrap_or(1.0))
         .collect();
-    let samples = samples(file)?;
+    let samples = file.observations(0..file.length(Dimension::Time))?;
     let scales = Scales {
         angle: need("scale_angle")?,
         angular_velocity: need("scale_angular_velocity")?,
@@ -249,42 +248,4 @@ fn same_mechanism(case: &Case, file: &ResultFile) -> Result<Case, NotAReference>
         Some((what, _)) => Err(NotAReference::OtherMechanism { file: name(), what }),
         None => Ok(kept),
     }
-}
-
-/// What digits are counted over, of each sample.
-fn samples(file: &ResultFile) -> Result<Vec<Observation>, crate::record::Error> {
-    let times = file.times()?;
-    let mut samples: Vec<Observation> =
-        times.iter().map(|time| Observation { time: *time, ..Observation::default() }).collect();
-    let [angle, rate] = [file.table("angle")?, file.table("angular_velocity")?];
-    let velocity = [file.table("velocity_x")?, file.table("velocity_y")?];
-    let offset = [file.table("clearance_x")?, file.table("clearance_y")?];
-    let [normal, tangential] = [file.table("normal_force")?, file.table("tangential_force")?];
-    let force = [file.table("joint_force_x")?, file.table("joint_force_y")?];
-    let torque = file.table("drive_torque")?;
-    for (row, sample) in samples.iter_mut().enumerate() {
-        let at = |table: &crate::record::Table, item: usize| table.values[row * table.width + item];
-        let two = |tables: &[crate::record::Table; 2], item| [0, 1].map(|c| at(&tables[c], item));
-        sample.bodies = (0..angle.width)
-            .map(|body| BodyObservation {
-                angle: at(&angle, body),
-                angular_velocity: at(&rate, body),
-                velocity: two(&velocity, body),
-                ..BodyObservation::default()
-            })
-            .collect();
-        sample.clearances = (0..normal.width)
-            .map(|k| ClearanceObservation {
-                offset: two(&offset, k),
-                normal_force: at(&normal, k),
-                tangential_force: at(&tangential, k),
-                ..ClearanceObservation::default()
-            })
-            .collect();
-        sample.joints = (0..force[0].width)
-            .map(|k| JointObservation { force: two(&force, k), ..JointObservation::default() })
-            .collect();
-        sample.drive_torques = (0..torque.width).map(|drive| at(&torque, drive)).collect();
-    }
-    Ok(samples)
 }

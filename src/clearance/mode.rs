@@ -7,15 +7,19 @@
 use super::{Clearance, Gap, GapRates};
 use crate::dae::{Direction, Watch};
 use crate::friction::{Branch, FrictionLaw};
-use crate::scalar::Scalar;
+use crate::scalar::{Scalar, bits};
+use serde::{Deserialize, Serialize};
 
 /// What a contact remembers of its begin and of its present branch.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(bound(serialize = "S: Scalar", deserialize = "S: Scalar"))]
 pub struct Contact<S> {
     /// Penetration rate at the begin (m/s), as it was.
+    #[serde(with = "bits")]
     pub impact_rate: S,
     /// One over the rate that scales the damping (s/m): the impact rate, raised to the smallest
     /// one allowed.
+    #[serde(with = "bits")]
     pub inverse_impact_rate: S,
     /// Branch of the friction law, if there is friction.
     pub branch: Option<Branch>,
@@ -24,7 +28,8 @@ pub struct Contact<S> {
 }
 
 /// The discrete mode of a clearance joint.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(bound(serialize = "S: Scalar", deserialize = "S: Scalar"))]
 pub enum Mode<S> {
     /// No contact, no force.
     Flight,

@@ -11,6 +11,7 @@ use crate::model::Description;
 use crate::model::{KeyPath, one_line};
 use crate::parameter::Values;
 use crate::post::table;
+use crate::scalar::Decimal;
 use crate::simulate::Simulation;
 use serde_json::{Map, Value, json};
 use std::fmt::{self, Display, Write};
@@ -64,7 +65,11 @@ impl Display for Checked<'_> {
         self.start_lines(f)?;
         let schedule = self.simulation.schedule();
         let (duration, samples): (f64, u64) = (schedule.duration(), schedule.len());
-        writeln!(f, "  run          {duration} s, {samples} samples")?;
+        let checkpoints = match &self.case.plan.checkpoint_interval {
+            Some(interval) => format!(", a checkpoint every {interval} s"),
+            None => String::new(),
+        };
+        writeln!(f, "  run          {duration} s, {samples} samples{checkpoints}")?;
         solver_line(&self.case.plan.solver, f)?;
         if !self.case.defaults.is_empty() {
             writeln!(f, "  defaults taken")?;
@@ -191,6 +196,7 @@ impl Checked<'_> {
             "turn": turn_json(&self.turn),
             "duration": schedule.duration::<f64>(),
             "samples": schedule.len(),
+            "checkpoint_interval": self.case.plan.checkpoint_interval.as_ref().map(Decimal::to_f64),
             "defaults": Map::from_iter(defaults),
             "notes": notes.collect::<Vec<_>>(),
         })

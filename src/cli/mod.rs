@@ -99,14 +99,20 @@ impl CaseArguments {
 #[derive(Debug)]
 struct Failure {
     code: u8,
-    error: Box<dyn StdError>,
+    /// `None` where the command has ended as it was asked to, short of its end.
+    error: Option<Box<dyn StdError>>,
     /// What became of the work done so far, if there is something to say.
     rest: Option<String>,
 }
 
 impl Failure {
     fn with(code: u8, error: impl StdError + 'static) -> Self {
-        Failure { code, error: Box::new(error), rest: None }
+        Failure { code, error: Some(Box::new(error)), rest: None }
+    }
+
+    /// An end that was asked for, and what became of the work done so far.
+    fn stop(code: u8, rest: String) -> Self {
+        Failure { code, error: None, rest: Some(rest) }
     }
 
     /// Command line or case file.
@@ -121,8 +127,10 @@ impl Failure {
 
     /// Tells the error and its causes on stderr.
     fn tell(&self) {
-        say(shown::message(&format!("error: {}", self.error)));
-        let mut cause = self.error.source();
+        if let Some(error) = &self.error {
+            say(shown::message(&format!("error: {error}")));
+        }
+        let mut cause = self.error.as_ref().and_then(|error| error.source());
         while let Some(error) = cause {
             say(shown::message(&format!("  caused by: {error}")));
             cause = error.source();

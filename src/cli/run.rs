@@ -2,21 +2,25 @@
 
 use super::signals::Signals;
 use super::{CaseArguments, Failure, chain};
-use crate::case::{Case, Precision};
+use crate::case::{Case, Changes, Precision};
 use crate::certify::{
     self, Companion, CrossCheck, Disagreement, Horizon, LEAST_DIGITS, ONE_DRAW, Reach, Until,
     Witness, ms,
 };
 use crate::digits::Sizes;
 use crate::mechanism::Observation;
-use crate::record::{self, Ending, Outcome, ResultFile, Writer, utc};
-use crate::run::{Contact, Event, Peak, Progress, Recorder, Revolution, Schedule, Trajectory};
+use crate::record::{self, Ending, Header, Outcome, ResultFile, Resumed, Segmented, utc};
+use crate::run::{
+    Contact, Event, Kept, Peak, Progress, Recorder, Revolution, Schedule, Trajectory,
+};
+use crate::scalar::Decimal;
 use crate::simulate::{self, Simulation, Statistics};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde_json::{Value, json};
 use std::fmt::Write as _;
-use std::path::PathBuf;
-use std::time::{Instant, SystemTime};
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant, SystemTime};
 
 /// Ticks of the progress bar over a whole run.
 const TICKS: u64 = 10_000;
@@ -32,6 +36,16 @@ pub struct Arguments {
     /// Replace the output if it exists.
     #[arg(long)]
     force: bool,
+    /// Go on from the last checkpoint of this case's run, if it has not come to its end; begin it if
+    /// there is none. Nothing is done if it is complete.
+    #[arg(long)]
+    resume: bool,
+    /// Stop at the first checkpoint behind this time (55m, 1h30m) with exit code 75; --resume goes on.
+    #[arg(long, value_name = "TIME", value_parser = humantime::parse_duration)]
+    stop_after: Option<Duration>,
+    /// Make a complete run longer: go on from its last checkpoint until this time (s).
+    #[arg(long, value_name = "SECONDS", value_parser = Decimal::new)]
+    extend: Option<Decimal>,
     /// Follow the growth of errors to the end of the run, not only to where its numbers end to
     /// mean something; of mechanisms without contacts and runs in 71 digits too.
     #[arg(long, conflicts_with = "no_tangent")]
@@ -54,23 +68,134 @@ pub struct Arguments {
 /// Simulates a case and writes its trajectory.
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let begun = Instant::now();
-    let case = arguments.case.read()?;
+    let longer = arguments.extend.iter().map(|until| format!("run.duration={until}"));
+    let case = arguments.case.read_with(&longer.collect::<Vec<_>>())?;
     let output = arguments.output.clone().unwrap_or_else(|| format!("{}.h5", case.name).into());
-    let simulation = Simulation::new(&case).map_err(Failure::input)?;
+    let mut simulation = Simulation::new(&case).map_err(Failure::input)?;
     let header = simulate::header(&case, simulation.mechanism(), utc(SystemTime::now()));
     let signals = Signals::new().map_err(Failure::output)?;
-    let inputs = [arguments.case.path.as_path()];
-    let writer = Writer::create_from(&output, header, arguments.force, &inputs);
-    let writer = writer.map_err(Failure::output)?;
+    let Some((writer, resumed)) = open(arguments, &case, &output, header)? else {
+        let file = output.to_string_lossy();
+        let told = json!({ "file": file, "case_name": case.name, "complete_already": true });
+        return match arguments.json {
+            true => super::print_json(format_args!("{told:#}\n")),
+            false => super::print(format_args!("{file}: complete already\n")),
+        };
+    };
     let tangent = Carried::of(arguments, &case, &simulation);
+    let memory = Memory::new(tangent, &simulation, arguments.check);
+    let stop_at = arguments.stop_after.and_then(|after| begun.checked_add(after));
+    let end = simulation.schedule().duration();
+    let mut witnessed = Witnessed { writer, memory, stop_at, end };
+    if let Some(resumed) = resumed {
+        if !arguments.quiet {
+            super::say(format_args!("goes on from t = {}", ms(resumed.time)));
+        }
+        resumed.recall(&mut witnessed.memory).map_err(not_gone_on)?;
+        simulation = simulation.from_checkpoint(resumed.run);
+    }
     let checked = arguments.check.then_some(&case);
-    let told = simulate_into(writer, simulation, &signals, arguments.quiet, tangent, checked)?;
+    let told = simulate_into(witnessed, simulation, &signals, arguments.quiet, tangent, checked)?;
     let seconds = begun.elapsed().as_secs_f64();
     match arguments.json {
         true => super::print_json(format_args!("{:#}\n", told.json(&case, seconds)?))?,
         false => super::print(told.words(&case, seconds)?)?,
     }
     told.check.map_or(Ok(()), confirmed)
+}
+
+/// What is asked of a run cannot be had.
+#[derive(Debug, thiserror::Error)]
+enum Refused {
+    #[error(
+        "{option} needs a case with run.checkpoint_interval (s): a run goes on from its checkpoints"
+    )]
+    NoCheckpoints { option: &'static str },
+    #[error("there is no run to make longer: {} is not there", path.display())]
+    Nothing { path: PathBuf },
+    #[error("--extend {until}: {} is a run of {duration} s, which is not shorter", path.display())]
+    NotLonger { path: PathBuf, until: Decimal, duration: Decimal },
+}
+
+/// The file to write, and what its run goes on from; `None` where it is complete already.
+fn open(
+    arguments: &Arguments,
+    case: &Case,
+    output: &Path,
+    header: Header,
+) -> Result<Option<(Segmented, Option<Resumed>)>, Failure> {
+    let Arguments { force, resume, stop_after, extend, .. } = arguments;
+    let asked = [
+        ("--resume", *resume),
+        ("--stop-after", stop_after.is_some()),
+        ("--extend", extend.is_some()),
+    ];
+    let checkpoints = case.plan.checkpoint_interval.is_some();
+    if let Some((option, _)) = asked.into_iter().find(|(_, asked)| *asked && !checkpoints) {
+        return Err(Failure::input(Refused::NoCheckpoints { option }));
+    }
+    let inputs = [arguments.case.path.as_path()];
+    if !resume && extend.is_none() {
+        let writer = Segmented::begin(output, header, *force, &inputs, checkpoints);
+        return Ok(Some((writer.map_err(Failure::output)?, None)));
+    }
+    // what is no result of ours is not in the way either, or is said to exist below
+    let there = ResultFile::open(output).ok();
+    if there.as_ref().is_some_and(|there| record::is_whole(there, &case.text)) {
+        record::forget_segments(output);
+        return Ok(None);
+    }
+    let mut force = *force;
+    if let Some(until) = extend {
+        let Some(there) = &there else {
+            return Err(Failure::input(Refused::Nothing { path: output.to_owned() }));
+        };
+        is_shorter(there, case, until)?;
+        if !record::has_segments(output) {
+            Segmented::extend(there, header.clone()).map_err(not_gone_on)?;
+        }
+        force = true;
+    }
+    // what the run itself has left, interrupted or failed, makes room for it
+    let own = |there: &ResultFile| there.text("case_toml") == Some(&case.text);
+    force |= there.is_some_and(|there| own(&there) && !there.is_complete());
+    Segmented::resume(output, header, force, &inputs).map(Some).map_err(not_gone_on)
+}
+
+/// Refuses to make a result file longer that is not of a shorter run of the same case.
+fn is_shorter(there: &ResultFile, case: &Case, until: &Decimal) -> Result<(), Failure> {
+    let text = there.text("case_toml").unwrap_or_default();
+    let read = |set: &[String]| -> Result<Case, Failure> {
+        let set = set.iter().map(|change| change.parse().map_err(Failure::input));
+        let changes = Changes { set: set.collect::<Result<_, _>>()?, ideal: false };
+        Case::from_text(there.path(), text, &changes).map_err(Failure::input)
+    };
+    let longer = read(&[format!("run.duration={until}")])?;
+    if longer.text != case.text {
+        let difference = record::first_difference(&longer.text, &case.text);
+        return Err(not_gone_on(record::Error::OtherCase {
+            path: there.path().to_owned(),
+            difference,
+        }));
+    }
+    let duration = read(&[])?.plan.duration;
+    if !(duration.to_f64() < until.to_f64()) {
+        let (path, until) = (there.path().to_owned(), until.clone());
+        return Err(Failure::input(Refused::NotLonger { path, until, duration }));
+    }
+    Ok(())
+}
+
+/// Why a run is not gone on with: what was asked for, or what lies on the disk.
+fn not_gone_on(error: record::Error) -> Failure {
+    use record::Error as E;
+    match error {
+        E::OtherCase { .. } | E::OtherProgram { .. } | E::NoCheckpoint { .. } => {
+            Failure::input(error)
+        }
+        E::Interrupted { .. } => Failure::with(4, error),
+        error => Failure::output(error),
+    }
 }
 
 /// Fails where the other engine does not agree.
@@ -209,7 +334,7 @@ fn check_json(check: &CrossCheck) -> Value {
 /// Runs a simulation into a writer, and finishes the file however the run ends; `checked` is the
 /// case that the other engine is to follow.
 fn simulate_into(
-    writer: Writer,
+    mut witnessed: Witnessed,
     simulation: Simulation<'_>,
     signals: &Signals,
     quiet: bool,
@@ -218,11 +343,7 @@ fn simulate_into(
 ) -> Result<Told, Failure> {
     let schedule = simulation.schedule().clone();
     let revolution = simulation.mechanism().revolution();
-    let sizes = Sizes::of(simulation.mechanism());
     let duration: f64 = schedule.duration();
-    let witness = (!matches!(tangent, Carried::No)).then(|| Witness::new(sizes));
-    let own = checked.map(|_| Trajectory::default());
-    let mut witnessed = Witnessed { writer, witness, own };
     let bar = progress_bar(quiet);
     let begun = Instant::now();
     let mut last = Progress::default();
@@ -232,7 +353,11 @@ fn simulate_into(
         signals.flow()
     };
     let (statistics, ran) = simulation.run(&mut witnessed, &mut watch);
-    let Witnessed { writer, witness, own } = witnessed;
+    let Witnessed { writer, memory: Memory { witness, own }, .. } = witnessed;
+    if let Err(simulate::Error::Stopped { time }) = ran {
+        bar.finish_and_clear();
+        return Err(stopped(&writer, time));
+    }
     let followed = ran.and_then(|()| {
         let companion = match witness {
             Some(witness) => follow(tangent, &schedule, &witness, last.steps, signals),
@@ -254,6 +379,7 @@ fn simulate_into(
     bar.finish_and_clear();
     let reason = followed.as_ref().err().map(chain);
     let companion = followed.as_ref().ok().and_then(|(companion, _)| companion.as_ref());
+    let goes_on = writer.segments().map(|(kept, _)| kept).filter(|kept| *kept > 0);
     let finished = writer.finish(Ending {
         series: companion.map(Companion::series).unwrap_or_default(),
         attributes: companion.map(Companion::attributes).unwrap_or_default(),
@@ -264,7 +390,7 @@ fn simulate_into(
             let path = finished.map_err(Failure::output)?;
             if let Some(code) = signals.exit_code() {
                 let rest = format!("the run itself is complete, in {}", path.display());
-                return Err(Failure { code, error: Box::new(NotFollowed), rest: Some(rest) });
+                return Err(Failure { rest: Some(rest), ..Failure::with(code, NotFollowed) });
             }
             return Ok(Told { path, progress: last, companion, check, revolution });
         }
@@ -274,12 +400,34 @@ fn simulate_into(
         Ok(path) => format!("what was simulated until then is in {}", path.display()),
         Err(error) => format!("what was simulated until then is lost: {}", chain(&error)),
     };
+    let rest = match goes_on {
+        Some(kept) => format!("{rest}\n--resume goes on from checkpoint {kept}"),
+        None => rest,
+    };
     let code = match (&error, signals.exit_code()) {
         (simulate::Error::Interrupted { .. }, Some(code)) => code,
         (simulate::Error::Recorder(_), _) => 3,
         _ => 4,
     };
-    Err(Failure { code, error: Box::new(error), rest: Some(rest) })
+    Err(Failure { rest: Some(rest), ..Failure::with(code, error) })
+}
+
+/// Exit code of a run that has stopped where it was asked to (sysexits.h: EX_TEMPFAIL, try again).
+const STOPPED: u8 = 75;
+
+/// A run has stopped at a checkpoint, as it was asked to.
+fn stopped(writer: &Segmented, time: f64) -> Failure {
+    let (kept, folder) = writer.segments().unwrap_or((0, Path::new(".")));
+    let segments = if kept == 1 { "segment is" } else { "segments are" };
+    Failure::stop(
+        STOPPED,
+        format!(
+            "stopped at the checkpoint at t = {}, as --stop-after has it; {kept} {segments} in {}; \
+             --resume goes on",
+            ms(time),
+            folder.display()
+        ),
+    )
 }
 
 /// A signal that came when the run was done.
@@ -305,15 +453,23 @@ fn follow(
     Some(certify::companion(case, schedule, witness, reach, &mut flow))
 }
 
-/// A writer, and who takes note of what goes to it where errors are followed.
-struct Witnessed {
-    writer: Writer,
+/// What is remembered of a run until it is done.
+struct Memory {
+    /// For the companion, where errors are followed.
     witness: Option<Witness>,
-    /// What went to the writer, where the other engine is to be held against it.
+    /// For the other engine, where it is to be held against the run.
     own: Option<Trajectory>,
 }
 
-impl Witnessed {
+impl Memory {
+    fn new(tangent: Carried<'_>, simulation: &Simulation<'_>, checked: bool) -> Self {
+        let sizes = Sizes::of(simulation.mechanism());
+        Memory {
+            witness: (!matches!(tangent, Carried::No)).then(|| Witness::new(sizes)),
+            own: checked.then(Trajectory::default),
+        }
+    }
+
     /// Keeps something for the other engine.
     fn keep(&mut self, keep: impl FnOnce(&mut Trajectory)) {
         if let Some(own) = &mut self.own {
@@ -322,7 +478,7 @@ impl Witnessed {
     }
 }
 
-impl Recorder for Witnessed {
+impl Recorder for Memory {
     type Error = record::Error;
 
     fn sample(&mut self, observation: &Observation) -> Result<(), record::Error> {
@@ -330,12 +486,12 @@ impl Recorder for Witnessed {
             witness.take(observation);
         }
         self.keep(|own| own.samples.push(observation.clone()));
-        self.writer.sample(observation)
+        Ok(())
     }
 
     fn event(&mut self, event: Event) -> Result<(), record::Error> {
         self.keep(|own| own.events.push(event));
-        self.writer.event(event)
+        Ok(())
     }
 
     fn contact(&mut self, contact: Contact) -> Result<(), record::Error> {
@@ -343,6 +499,39 @@ impl Recorder for Witnessed {
         if let Some(witness) = &mut self.witness {
             witness.take_contact(contact);
         }
+        Ok(())
+    }
+
+    fn peak(&mut self, _: Peak) -> Result<(), record::Error> {
+        Ok(())
+    }
+}
+
+/// A writer, and what is remembered of what goes to it.
+struct Witnessed {
+    writer: Segmented,
+    memory: Memory,
+    /// From when on the run is to stop at a checkpoint, ...
+    stop_at: Option<Instant>,
+    /// ... but not at its end (s).
+    end: f64,
+}
+
+impl Recorder for Witnessed {
+    type Error = record::Error;
+
+    fn sample(&mut self, observation: &Observation) -> Result<(), record::Error> {
+        self.memory.sample(observation)?;
+        self.writer.sample(observation)
+    }
+
+    fn event(&mut self, event: Event) -> Result<(), record::Error> {
+        self.memory.event(event)?;
+        self.writer.event(event)
+    }
+
+    fn contact(&mut self, contact: Contact) -> Result<(), record::Error> {
+        self.memory.contact(contact)?;
         self.writer.contact(contact)
     }
 
@@ -356,6 +545,12 @@ impl Recorder for Witnessed {
 
     fn revolution(&mut self, revolution: &Revolution) -> Result<(), record::Error> {
         self.writer.revolution(revolution)
+    }
+
+    fn checkpoint(&mut self, kept: &Kept) -> Result<ControlFlow<()>, record::Error> {
+        let flow = self.writer.checkpoint(kept)?;
+        let late = self.stop_at.is_some_and(|stop_at| Instant::now() >= stop_at);
+        Ok(if late && kept.time < self.end { ControlFlow::Break(()) } else { flow })
     }
 }
 

@@ -9,6 +9,7 @@
 
 use crate::parameter::{Key, Otherwise, Range, Takes, Values, kinds};
 use crate::scalar::Scalar;
+use serde::{Deserialize, Serialize};
 
 pub use ambrosio::Ramp;
 
@@ -32,7 +33,7 @@ pub struct Ends<S> {
 }
 
 /// A branch of a law: its number in the order of the slip, backward first.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Branch(pub u8);
 
 /// A function of slip and inner state, with its partial derivatives.

@@ -37,6 +37,53 @@ pub enum Error {
         /// What failed.
         source: Box<Error>,
     },
+    /// There are segments of a run that has not come to its end.
+    #[error(
+        "{} holds a run that has not come to its end ({count} of its segments): --resume goes on with \
+         it, --force begins anew", folder.display()
+    )]
+    SegmentsLeft {
+        /// Where they are.
+        folder: PathBuf,
+        /// How many.
+        count: usize,
+    },
+    /// A run is not to be gone on with by another case.
+    #[error("{} is of another case: {difference}", path.display())]
+    OtherCase {
+        /// The file.
+        path: PathBuf,
+        /// What differs, in words.
+        difference: String,
+    },
+    /// A run is not to be gone on with by another program.
+    #[error(
+        "{} was written by {theirs}, this is {ours}: another program may go on otherwise; go on with \
+         that one, or begin anew", path.display()
+    )]
+    OtherProgram {
+        /// The file.
+        path: PathBuf,
+        /// Who wrote it.
+        theirs: String,
+        /// Who would go on.
+        ours: String,
+    },
+    /// A file has no checkpoint to go on from.
+    #[error(
+        "{} has no checkpoint to go on from: its case has no run.checkpoint_interval, or it ended \
+         before the first", path.display()
+    )]
+    NoCheckpoint {
+        /// The file.
+        path: PathBuf,
+    },
+    /// The process was asked to stop.
+    #[error("interrupted while {} was read", path.display())]
+    Interrupted {
+        /// What was being read.
+        path: PathBuf,
+    },
     /// What was read back from the disk is not what was written.
     #[error("cannot write {}: {what} came back from the disk otherwise than it was written", path.display())]
     NotAsWritten {

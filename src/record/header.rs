@@ -71,6 +71,8 @@ pub struct Series {
 pub enum Outcome {
     /// To the end of its duration: `run_status` is `complete`.
     Complete,
+    /// To a checkpoint, from where it goes on in another file: `run_status` is `running`.
+    Running,
     /// Failed or interrupted: `run_status` is `failed`.
     Failed {
         /// Why: attribute `run_failure`.

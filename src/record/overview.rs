@@ -1,5 +1,6 @@
 //! What a result file holds and how it was made, in words.
 
+use super::segments::CHECKPOINT;
 use super::{Attribute, Dimension, Error, ResultFile};
 use crate::model::one_line;
 use serde_json::{Map, Value, json};
@@ -30,7 +31,7 @@ impl Overview {
     pub fn of(file: &ResultFile) -> Result<Self, Error> {
         let text = |name| file.text(name).unwrap_or_default().to_owned();
         let times = file.times()?;
-        let told = ["Conventions", "title", "case_name", "case_toml", "run_status"];
+        let told = ["Conventions", "title", "case_name", "case_toml", "run_status", CHECKPOINT];
         let rest = file.attributes().iter().filter(|(name, _)| !told.contains(&name.as_str()));
         let dimensions = Dimension::ALL
             .into_iter()

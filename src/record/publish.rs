@@ -272,14 +272,9 @@ impl Draft {
         self.file.sync_all().map_err(|source| self.error("write", source))
     }
 
-    /// Makes the new name durable; some file systems cannot, and then it is as durable as they are.
     fn sync_folder(&self) -> Result<(), Error> {
-        let Ok(folder) = File::open(folder_of(&self.target)) else { return Ok(()) };
-        match folder.sync_all() {
-            // EBADF, EINVAL, EOPNOTSUPP: there is no such thing here
-            Err(error) if matches!(error.raw_os_error(), Some(9 | 22 | 95)) => Ok(()),
-            done => done.map_err(|source| self.error("make durable the name of", source)),
-        }
+        let synced = make_names_durable(folder_of(&self.target));
+        synced.map_err(|source| self.error("make durable the name of", source))
     }
 
     fn error(&self, attempt: &'static str, source: io::Error) -> Error {
@@ -294,6 +289,17 @@ impl Drop for Draft {
             let _ = fs::remove_file(path);
             unpublished.retain(|temporary| temporary != path);
         }
+    }
+}
+
+/// Makes the names in a folder durable; some file systems cannot, and then they are as durable as these
+/// have it.
+pub(super) fn make_names_durable(folder: &Path) -> io::Result<()> {
+    let Ok(folder) = File::open(folder) else { return Ok(()) };
+    match folder.sync_all() {
+        // EBADF, EINVAL, EOPNOTSUPP: there is no such thing here
+        Err(error) if matches!(error.raw_os_error(), Some(9 | 22 | 95)) => Ok(()),
+        done => done,
     }
 }
 
@@ -357,7 +363,7 @@ fn check_target(path: &Path, force: bool) -> Result<PathBuf, Error> {
 }
 
 /// The folder that a path is in.
-fn folder_of(path: &Path) -> &Path {
+pub(super) fn folder_of(path: &Path) -> &Path {
     match path.parent() {
         Some(parent) if parent.as_os_str().is_empty() => Path::new("."),
         Some(parent) => parent,

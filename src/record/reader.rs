@@ -5,7 +5,9 @@ use super::schema::{
 };
 use super::sound::{Member, Ration, members};
 use super::{Attribute, Error, LibraryError};
-use crate::mechanism::{Measure, Measures};
+use crate::mechanism::{
+    BodyObservation, ClearanceObservation, JointObservation, Measure, Measures, Observation,
+};
 use crate::model::{did_you_mean, is_name, shortened};
 use crate::run::{Contact, Event, EventKind, Extremum, Peak, Revolution};
 use hdf5::{File, IndexType, IterationOrder, MinorErrorCode};
@@ -258,6 +260,59 @@ impl ResultFile {
             return Err(self.damaged(format!("{name} has {found} values for {samples} samples")));
         }
         Ok(Some(values))
+    }
+
+    /// Some samples, as they were observed, but for what is beyond doubles.
+    ///
+    /// # Errors
+    /// What reading meets.
+    pub fn observations(&self, rows: Range<usize>) -> Result<Vec<Observation>, Error> {
+        let none = Observation {
+            bodies: vec![BodyObservation::default(); self.bodies().len()],
+            clearances: vec![ClearanceObservation::default(); self.clearances().len()],
+            joints: vec![JointObservation::default(); self.joints().len()],
+            drive_torques: vec![0.0; self.drives().len()],
+            ..Observation::default()
+        };
+        let mut all = vec![none; rows.len()];
+        let mut read = |name: &str, put: fn(&mut Observation, usize, f64)| {
+            let table = self.table_rows(self.dataset(name)?, rows.clone())?;
+            for (sample, values) in all.iter_mut().zip(table.values.chunks(table.width.max(1))) {
+                values.iter().enumerate().for_each(|(item, value)| put(sample, item, *value));
+            }
+            Ok::<_, Error>(())
+        };
+        read("time", |o, _, x| o.time = x)?;
+        read("position_x", |o, k, x| o.bodies[k].position[0] = x)?;
+        read("position_y", |o, k, x| o.bodies[k].position[1] = x)?;
+        read("angle", |o, k, x| o.bodies[k].angle = x)?;
+        read("velocity_x", |o, k, x| o.bodies[k].velocity[0] = x)?;
+        read("velocity_y", |o, k, x| o.bodies[k].velocity[1] = x)?;
+        read("angular_velocity", |o, k, x| o.bodies[k].angular_velocity = x)?;
+        read("acceleration_x", |o, k, x| o.bodies[k].acceleration[0] = x)?;
+        read("acceleration_y", |o, k, x| o.bodies[k].acceleration[1] = x)?;
+        read("angular_acceleration", |o, k, x| o.bodies[k].angular_acceleration = x)?;
+        read("clearance_x", |o, k, x| o.clearances[k].offset[0] = x)?;
+        read("clearance_y", |o, k, x| o.clearances[k].offset[1] = x)?;
+        read("eccentricity", |o, k, x| o.clearances[k].eccentricity = x)?;
+        read("penetration", |o, k, x| o.clearances[k].penetration = x)?;
+        read("penetration_rate", |o, k, x| o.clearances[k].penetration_rate = x)?;
+        read("slip_velocity", |o, k, x| o.clearances[k].slip_velocity = x)?;
+        read("normal_force", |o, k, x| o.clearances[k].normal_force = x)?;
+        read("tangential_force", |o, k, x| o.clearances[k].tangential_force = x)?;
+        read("in_contact", |o, k, x| o.clearances[k].in_contact = x != 0.0)?;
+        read("joint_force_x", |o, k, x| o.joints[k].force[0] = x)?;
+        read("joint_force_y", |o, k, x| o.joints[k].force[1] = x)?;
+        read("joint_moment", |o, k, x| o.joints[k].moment = x)?;
+        read("drive_torque", |o, k, x| o.drive_torques[k] = x)?;
+        read("energy_kinetic", |o, _, x| o.energy.kinetic = x)?;
+        read("energy_potential", |o, _, x| o.energy.potential = x)?;
+        read("energy_elastic", |o, _, x| o.energy.elastic = x)?;
+        read("energy_dissipated", |o, _, x| o.energy.dissipated = x)?;
+        read("drive_work", |o, _, x| o.energy.drive_work = x)?;
+        read("load_work", |o, _, x| o.energy.load_work = x)?;
+        read("energy_residual", |o, _, x| o.energy.residual = x)?;
+        Ok(all)
     }
 
     /// All events.

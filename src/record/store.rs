@@ -18,6 +18,9 @@ pub(super) const CHUNK_ROWS: usize = 4096;
 /// Rows of a chunk along revolutions: most runs have few.
 const CHUNK_REVOLUTIONS: usize = 64;
 
+/// The same of a segment, for rows that are soon copied.
+const CHUNK_ROWS_OF_SEGMENTS: usize = 512;
+
 /// Effort of the compression, 0 to 9.
 const DEFLATE: u8 = 4;
 
@@ -40,9 +43,24 @@ impl Block {
     }
 }
 
-/// Rows of a chunk along a dimension that grows.
-fn chunk_rows(dimension: Dimension) -> usize {
-    if dimension == Dimension::Revolution { CHUNK_REVOLUTIONS } else { CHUNK_ROWS }
+/// What a file is for, which says how its rows are stored.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Purpose {
+    /// To be kept: compressed.
+    Result,
+    /// To be there for a while: quickly written.
+    Segment,
+}
+
+impl Purpose {
+    /// Rows of a chunk along a dimension that grows; chunks of less than [`CHUNK_ROWS`] are as they are.
+    fn chunk_rows(self, dimension: Dimension) -> usize {
+        match (self, dimension) {
+            (_, Dimension::Revolution) => CHUNK_REVOLUTIONS,
+            (Purpose::Result, _) => CHUNK_ROWS,
+            (Purpose::Segment, _) => CHUNK_ROWS_OF_SEGMENTS,
+        }
+    }
 }
 
 /// The datasets that grow with a dimension.
@@ -66,6 +84,7 @@ pub(super) struct Store {
     rows: [usize; Dimension::ALL.len()],
     file: File,
     written: Written,
+    purpose: Purpose,
     /// Where the file is, and what it will be called.
     at: PathBuf,
     path: PathBuf,
@@ -73,7 +92,12 @@ pub(super) struct Store {
 
 impl Store {
     /// Makes the file at `at` with all its attributes and empty datasets; errors name `path`.
-    pub fn create(at: &Path, path: &Path, header: &Header) -> Result<Self, Error> {
+    pub fn create(
+        at: &Path,
+        path: &Path,
+        header: &Header,
+        purpose: Purpose,
+    ) -> Result<Self, Error> {
         let file = create_file(at).map_err(failed("create", path))?;
         let mut written = Written::default();
         write_header(&file, &mut written, header)
@@ -84,6 +108,7 @@ impl Store {
             rows: [0; Dimension::ALL.len()],
             file,
             written,
+            purpose,
             at: at.to_owned(),
             path: path.to_owned(),
         };
@@ -97,10 +122,11 @@ impl Store {
             let handle = match names(header, dimension) {
                 Some(names) => named_scale(&self.file, &mut self.written, dimension, names)?,
                 None if dimension == Dimension::Time => {
-                    create_growing::<f64>(&self.file, dimension.name(), CHUNK_ROWS, None)?
+                    let rows = self.purpose.chunk_rows(dimension);
+                    create_growing::<f64>(&self.file, dimension.name(), rows, None)?
                 }
                 None => {
-                    let rows = chunk_rows(dimension);
+                    let rows = self.purpose.chunk_rows(dimension);
                     create_growing::<i32>(&self.file, dimension.name(), rows, None)?
                 }
             };
@@ -129,7 +155,7 @@ impl Store {
                     unit,
                     long_name,
                     values,
-                    (chunk_rows(dataset.rows()), width),
+                    (self.purpose.chunk_rows(dataset.rows()), width),
                 )?;
                 let dimensions = [dataset.rows()].into_iter().chain(dataset.items());
                 for (place, dimension) in (0..).zip(dimensions) {
@@ -209,7 +235,7 @@ impl Store {
             unit,
             long_name,
             stored,
-            (chunk_rows(series.along), None),
+            (self.purpose.chunk_rows(series.along), None),
         )?;
         self.written.scale(&handle, &self.scales[series.along as usize].1, 0)?;
         write_values(&handle, stored, None, 0..rows, &series.values)?;
@@ -443,6 +469,7 @@ fn write_ending(file: &File, written: &mut Written, ending: &Ending) -> hdf5::Re
     file.delete_attr("run_status")?;
     match &ending.outcome {
         Outcome::Complete => written.attribute(file, "run_status", "complete"),
+        Outcome::Running => written.attribute(file, "run_status", "running"),
         Outcome::Failed { reason } => {
             written.attribute(file, "run_status", "failed")?;
             written.attribute(file, "run_failure", &**reason)

@@ -7,10 +7,12 @@
 use super::Error;
 use super::header::{Ending, Header, Outcome, utc};
 use super::publish::Draft;
+use super::reader::ResultFile;
 use super::schema::{Dimension, Part, Side, Source};
-use super::store::{Block, CHUNK_ROWS, Store, datasets_of};
+use super::store::{Block, CHUNK_ROWS, Purpose, Store, datasets_of};
 use crate::mechanism::Observation;
 use crate::run::{Contact, Event, Extremum, Peak, Recorder, Revolution};
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::thread::JoinHandle;
@@ -35,6 +37,10 @@ pub struct Writer {
     contacts: Block,
     peaks: Block,
     revolutions: Block,
+    /// Rows so far, by dimension.
+    rows: [usize; Dimension::ALL.len()],
+    /// The dimensions of the full blocks so far, in the order in which they were written.
+    order: Vec<Dimension>,
     widths: Widths,
     draft: Option<Draft>,
     path: PathBuf,
@@ -70,9 +76,20 @@ impl Writer {
         force: bool,
         inputs: &[&Path],
     ) -> Result<Writer, Error> {
+        Writer::make(path, header, force, inputs, Purpose::Result)
+    }
+
+    /// The same for a file of a purpose.
+    pub(super) fn make(
+        path: &Path,
+        header: Header,
+        force: bool,
+        inputs: &[&Path],
+        purpose: Purpose,
+    ) -> Result<Writer, Error> {
         let mut draft = Draft::create_from(path, force, inputs)?;
         let room = draft.take_room(ROOM)?;
-        let store = Store::create(draft.temporary(), path, &header)?;
+        let store = Store::create(draft.temporary(), path, &header, purpose)?;
         let (sender, receiver) = sync_channel(0);
         let thread = std::thread::Builder::new()
             .name("result file".to_owned())
@@ -90,6 +107,8 @@ impl Writer {
             contacts: Block::new(Dimension::Contact),
             peaks: Block::new(Dimension::Peak),
             revolutions: Block::new(Dimension::Revolution),
+            rows: [0; Dimension::ALL.len()],
+            order: Vec::new(),
             widths: Widths {
                 bodies: header.bodies.len(),
                 joints: header.joints.len(),
@@ -123,6 +142,11 @@ impl Writer {
         self.publish_kept()
     }
 
+    /// The same for a file that is of no use but whole: after an error there is none.
+    pub(super) fn finish_or_drop(mut self, ending: Ending) -> Result<PathBuf, Error> {
+        self.finish_whole(ending)
+    }
+
     fn publish_kept(&mut self) -> Result<PathBuf, Error> {
         match self.draft.take() {
             Some(draft) => draft.publish_failed(),
@@ -140,7 +164,7 @@ impl Writer {
         ] {
             self.send(Message::Block(block))?;
         }
-        let complete = ending.outcome == Outcome::Complete;
+        let complete = matches!(ending.outcome, Outcome::Complete | Outcome::Running);
         self.send(Message::Finish(ending))?;
         self.join()?;
         let Some(draft) = self.draft.take() else {
@@ -187,16 +211,60 @@ impl Writer {
         }
     }
 
-    /// Counts a row of a block and sends the block if it is full.
-    fn count(&mut self, block: fn(&mut Writer) -> &mut Block) -> Result<(), Error> {
+    /// Counts rows of a block and sends the block if it is full.
+    fn count(&mut self, dimension: Dimension, rows: usize) -> Result<(), Error> {
         self.check()?;
-        let block = block(self);
-        block.rows += 1;
+        self.rows[dimension as usize] += rows;
+        let block = self.block(dimension);
+        block.rows += rows;
         if block.rows < CHUNK_ROWS {
             return Ok(());
         }
-        let full = std::mem::replace(block, Block::new(block.dimension));
+        let full = std::mem::replace(block, Block::new(dimension));
+        self.order.push(dimension);
         self.send(Message::Block(full))
+    }
+
+    /// The block that gathers the rows of a dimension that grows.
+    fn block(&mut self, dimension: Dimension) -> &mut Block {
+        match dimension {
+            Dimension::Event => &mut self.events,
+            Dimension::Contact => &mut self.contacts,
+            Dimension::Peak => &mut self.peaks,
+            Dimension::Revolution => &mut self.revolutions,
+            _ => &mut self.samples,
+        }
+    }
+
+    /// Rows so far, by dimension.
+    pub(super) fn rows(&self) -> &[usize; Dimension::ALL.len()] {
+        &self.rows
+    }
+
+    /// The dimensions of the full blocks so far, in the order in which they were written: it decides
+    /// where in the file each stands.
+    pub(super) fn order(&self) -> &[Dimension] {
+        &self.order
+    }
+
+    /// Takes over rows of another file of the same case, no more than are left of the present block.
+    pub(super) fn copy(
+        &mut self,
+        file: &ResultFile,
+        dimension: Dimension,
+        rows: Range<usize>,
+    ) -> Result<(), Error> {
+        let count = rows.len();
+        let block = self.block(dimension);
+        for (dataset, column) in datasets_of(dimension).zip(&mut block.columns) {
+            column.extend(file.table_rows(dataset, rows.clone())?.values);
+        }
+        self.count(dimension, count)
+    }
+
+    /// How many rows of a dimension make its block full.
+    pub(super) fn room(&mut self, dimension: Dimension) -> usize {
+        CHUNK_ROWS - self.block(dimension).rows
     }
 }
 
@@ -225,7 +293,7 @@ impl Recorder for Writer {
                 | Source::Extreme(..) => {}
             }
         }
-        self.count(|writer| &mut writer.samples)
+        self.count(Dimension::Time, 1)
     }
 
     fn event(&mut self, event: Event) -> Result<(), Error> {
@@ -234,7 +302,7 @@ impl Recorder for Writer {
                 column.push(value(&event));
             }
         }
-        self.count(|writer| &mut writer.events)
+        self.count(Dimension::Event, 1)
     }
 
     fn contact(&mut self, contact: Contact) -> Result<(), Error> {
@@ -243,7 +311,7 @@ impl Recorder for Writer {
                 column.push(value(&contact));
             }
         }
-        self.count(|writer| &mut writer.contacts)
+        self.count(Dimension::Contact, 1)
     }
 
     fn peak(&mut self, peak: Peak) -> Result<(), Error> {
@@ -252,7 +320,7 @@ impl Recorder for Writer {
                 column.push(value(&peak));
             }
         }
-        self.count(|writer| &mut writer.peaks)
+        self.count(Dimension::Peak, 1)
     }
 
     fn keeps_revolutions(&self) -> bool {
@@ -277,7 +345,7 @@ impl Recorder for Writer {
                 _ => {}
             }
         }
-        self.count(|writer| &mut writer.revolutions)
+        self.count(Dimension::Revolution, 1)
     }
 }
 

@@ -165,7 +165,7 @@ pub(super) fn everything(runs: &[Run<'_>]) -> String {
 }
 
 fn everything_of(run: &Run<'_>) -> String {
-    let hidden = ["case_toml", "Conventions"];
+    let hidden = ["case_toml", "Conventions", "checkpoint"];
     let attributes = run.file.attributes().iter();
     let rows: String = attributes
         .filter(|(name, _)| !hidden.contains(&name.as_str()))

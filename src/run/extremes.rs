@@ -12,6 +12,8 @@
 
 use super::recorder::{Extremum, Revolution};
 use crate::mechanism::{Measure, Measures};
+use crate::scalar::bits;
+use serde::{Deserialize, Serialize};
 
 /// What the search for an extreme may leave out, of the measure's largest magnitude in its revolution.
 pub const LEFT_OUT: f64 = 1e-8;
@@ -109,6 +111,23 @@ impl Station {
     }
 }
 
+/// What is kept of the present revolution at a checkpoint.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub(super) struct Records {
+    number: u64,
+    #[serde(with = "bits")]
+    begin: f64,
+    largest: Vec<Extremum>,
+    smallest: Vec<Extremum>,
+}
+
+impl Records {
+    /// Whether they are as many as these measures have.
+    pub fn fit(&self, measures: &Measures) -> bool {
+        self.largest.len() == measures.len() && self.smallest.len() == measures.signed()
+    }
+}
+
 /// Keeps the extremes of the present revolution.
 #[derive(Debug)]
 pub(super) struct Tracker {
@@ -172,6 +191,24 @@ impl Tracker {
             course: Vec::new(),
             spare: Vec::new(),
             finished: Vec::new(),
+        }
+    }
+
+    /// What is kept of it, where the last step ended.
+    pub fn hold(&mut self) -> Records {
+        self.take_last();
+        let Revolution { begin, largest, smallest, .. } = self.row.clone();
+        Records { number: self.number, begin, largest, smallest }
+    }
+
+    /// Goes on with what was held; a restart comes next.
+    pub fn take_up(&mut self, records: &Records) {
+        let Records { number, begin, largest, smallest } = records.clone();
+        (self.number, self.boundary) = (number, self.boundary_of(number));
+        self.row = Revolution { begin, largest, smallest, ..self.row.clone() };
+        // once for the largest magnitudes, once more with them
+        for place in (0..self.row.largest.len()).chain(0..self.row.largest.len()) {
+            self.raise(place);
         }
     }
 

@@ -5,7 +5,9 @@
 //! work of the drives is a Gauss–Legendre quadrature of their power.
 
 use super::extremes::{Look, Parts, Tracker};
-use super::{Error, Progress, Recorder, RulingCounts, Schedule, Watcher};
+use super::{
+    Checkpoint, Error, Progress, Reached, Recorder, RulingCounts, Schedule, Stretch, Watcher,
+};
 use crate::dae::{Fault, Snapshot, State, System};
 use crate::halt;
 use crate::mechanism::{Mechanism, Observation};
@@ -32,28 +34,30 @@ fn gauss<S: Scalar>() -> [(S, S); 4] {
     [(half - outer, light), (half - inner, heavy), (half + inner, heavy), (half + outer, light)]
 }
 
-/// Runs a mechanism without freedom through its schedule.
+/// Runs a mechanism without freedom through a part of its schedule. The mechanism is at its start.
 ///
 /// # Errors
 /// See [`Error`]: a position that cannot be reached or is singular, or a recorder's.
 pub fn kinematic<S: Scalar, R: Recorder>(
     mechanism: &mut Mechanism<S>,
     schedule: &Schedule,
+    stretch: &Stretch<'_, S>,
     recorder: &mut R,
     watch: Watcher<'_>,
-) -> Result<RulingCounts, Error<Infallible, R::Error>> {
-    match go(mechanism, schedule, recorder, watch) {
+) -> Result<Reached<S>, Error<Infallible, R::Error>> {
+    match go(mechanism, schedule, stretch, recorder, watch) {
         Err(Error::System { time, .. }) if halt::is_asked() => Err(Error::Interrupted { time }),
-        gone => gone.map(|()| RulingCounts::default()),
+        gone => gone,
     }
 }
 
 fn go<S: Scalar, R: Recorder>(
     mechanism: &mut Mechanism<S>,
     schedule: &Schedule,
+    stretch: &Stretch<'_, S>,
     recorder: &mut R,
     watch: Watcher<'_>,
-) -> Result<(), Error<Infallible, R::Error>> {
+) -> Result<Reached<S>, Error<Infallible, R::Error>> {
     let mut now = mechanism.start().clone();
     let fastest = mechanism.fastest_turn().max(1e-300);
     let rule = gauss();
@@ -61,8 +65,24 @@ fn go<S: Scalar, R: Recorder>(
     let mut progress = Progress::default();
     let mut tracker = (recorder.keeps_revolutions())
         .then(|| Tracker::new(mechanism.measures(), mechanism.revolution()));
-    for k in 0..schedule.len() {
-        let time: S = schedule.time(k);
+    let mut next = 0;
+    if let Some(kept) = stretch.from {
+        (now, progress, next) = (kept.state.clone(), kept.progress, kept.next_sample);
+        let time = now.time;
+        let fault = |source| Error::System { time: time.to_f64(), source };
+        reach(mechanism, &mut now, time).map_err(fault)?;
+        if let (Some(tracker), Some(records)) = (&mut tracker, &kept.extremes) {
+            tracker.take_up(records);
+            tracker.restart(time.to_f64(), |values| mechanism.measure(values));
+        }
+    }
+    loop {
+        let sample = Some(next).filter(|next| *next < schedule.len());
+        let sample = sample.map(|next| schedule.time::<S>(next));
+        let only_here = schedule.is_only_of_the_end(next);
+        let due = |time: &S| stretch.until.is_none_or(|until| *time <= until && !only_here);
+        let sample = sample.filter(due);
+        let Some(time) = sample.or(stretch.until) else { break };
         let span = time - now.time;
         let parts = (span.to_f64() * fastest / LARGEST_TURN).ceil().max(1.0);
         for part in 1..=parts as u64 {
@@ -89,7 +109,13 @@ fn go<S: Scalar, R: Recorder>(
                 return Err(Error::Interrupted { time: progress.time });
             }
         }
-        let observation = mechanism.observe(schedule.time(k), &now.integrals);
+        if sample.is_none() {
+            let extremes = tracker.as_mut().map(|tracker| tracker.hold());
+            let kept = Checkpoint { extremes, ..Checkpoint::bare(now, next, progress) };
+            return Ok(Reached::Checkpoint(Box::new(kept)));
+        }
+        let observation = mechanism.observe(schedule.time(next), &now.integrals);
+        next += 1;
         progress.samples += 1;
         recorder.sample(&observation).map_err(Error::Recorder)?;
     }
@@ -97,7 +123,7 @@ fn go<S: Scalar, R: Recorder>(
         recorder.revolution(&last).map_err(Error::Recorder)?;
     }
     let _ = watch(&progress);
-    Ok(())
+    Ok(Reached::End(RulingCounts::default()))
 }
 
 /// Follows the extremes to where the mechanism now stands; leaves it there.

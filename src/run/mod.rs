@@ -4,6 +4,7 @@
 //! constraints, with accelerations, multipliers and forces solved afresh. At an event the state
 //! that the engine returns is projected, never polished, and the new mode is latched from it.
 
+mod checkpoint;
 mod extremes;
 mod inside;
 mod kinematic;
@@ -16,6 +17,7 @@ mod trajectory;
 mod window;
 mod witness;
 
+pub use checkpoint::{Checkpoint, Checkpoints, NotACheckpoint, Reached, Stretch};
 pub use extremes::LEFT_OUT;
 pub use kinematic::{Assembled, TooFar, kinematic};
 pub use recorder::*;
@@ -27,10 +29,11 @@ use crate::clearance::{Clearance, EventSlot, Mode};
 use crate::dae::{Advance, Direction, Engine, Fault, Snapshot, System};
 use crate::halt;
 use crate::mechanism::{Ledger, Mechanism};
-use crate::scalar::Scalar;
+use crate::scalar::{Scalar, bits};
 use extremes::Tracker;
 use inside::End;
 use sampling::Mark;
+use serde::{Deserialize, Serialize};
 use std::ops::ControlFlow;
 use touching::{Contacts, Touching};
 use window::Window;
@@ -113,11 +116,13 @@ pub enum Error<E: std::error::Error + 'static, R: std::error::Error + 'static> {
 }
 
 /// How far a run is.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Progress {
     /// Simulated time (s).
+    #[serde(with = "bits")]
     pub time: f64,
     /// Length of the last step (s).
+    #[serde(with = "bits")]
     pub step: f64,
     /// Steps so far.
     pub steps: u64,
@@ -130,7 +135,7 @@ pub struct Progress {
 }
 
 /// How often the decisions that clearances hold (DESIGN.md) were called on.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct RulingCounts {
     /// Contacts that began slower than their `minimum_impact_rate`.
     pub slow_approaches: u64,
@@ -152,6 +157,8 @@ struct Run<'a, S: Scalar, E: Engine<S>, R> {
     ledger: Ledger,
     /// Relative tolerance of the engine: what it makes of a steady force is no peak.
     tolerance: f64,
+    /// Whether it leads to a checkpoint, and not to the end of the run.
+    goes_on: bool,
     next_sample: u64,
     /// Its time (s); `None` behind the last.
     next_time: Option<S>,
@@ -194,6 +201,30 @@ where
     E: Engine<S, System = Mechanism<S>>,
     R: Recorder,
 {
+    match stretch(engine, schedule, &Stretch::WHOLE, tolerance, recorder, watch)? {
+        Reached::End(counts) => Ok(counts),
+        Reached::Checkpoint(kept) => Ok(kept.rulings),
+    }
+}
+
+/// Runs a mechanism through a part of its schedule. The engine is new, and its mechanism at its start
+/// or, behind a checkpoint, about to be put where that has it.
+///
+/// # Errors
+/// See [`Error`]; what was recorded until then stays recorded.
+pub fn stretch<S, E, R>(
+    engine: &mut E,
+    schedule: &Schedule,
+    stretch: &Stretch<'_, S>,
+    tolerance: f64,
+    recorder: &mut R,
+    watch: Watcher<'_>,
+) -> Outcome<Reached<S>, S, E, R>
+where
+    S: Scalar,
+    E: Engine<S, System = Mechanism<S>>,
+    R: Recorder,
+{
     let start = engine.system().start().clone();
     let system = engine.system();
     let (clearances, length) = (system.modes().len(), system.length());
@@ -216,10 +247,11 @@ where
         recorder,
         schedule,
         tolerance,
+        goes_on: stretch.until.is_some(),
         next_sample: 0,
         next_time: None,
         marks: Vec::new(),
-        window: Window::new(clearances),
+        window: Window::new(clearances, f64::NEG_INFINITY),
         witness: Witness::new(names, frictions, [length, speed, mass], tolerance),
         contacts: Contacts::default(),
         peaks: Vec::new(),
@@ -230,8 +262,18 @@ where
         segment: 1,
         counts: RulingCounts::default(),
     };
-    run.restart(&start)?;
-    let going = run.go(&mut *watch);
+    let begun = match stretch.from {
+        Some(kept) => run.take_up(kept),
+        None => run.restart(&start),
+    };
+    let going = begun.and_then(|()| run.go(stretch, &mut *watch));
+    let going = match (going, stretch.until) {
+        (Ok(()), Some(_)) => match run.keep() {
+            Ok(kept) => return Ok(Reached::Checkpoint(Box::new(kept))),
+            Err(error) => Err(error),
+        },
+        (going, _) => going,
+    };
     // contacts still open and peaks not settled belong to what was simulated, however it ended
     let closing = run.close();
     // the last word, whether or not it asks to stop
@@ -241,7 +283,7 @@ where
         Err(Error::Engine { .. } | Error::System { .. }) if halt::is_asked() => {
             Err(Error::Interrupted { time: run.engine.now().time.to_f64() })
         }
-        going => going.and(closing).map(|()| run.counts),
+        going => going.and(closing).map(|()| Reached::End(run.counts)),
     }
 }
 
@@ -251,12 +293,15 @@ where
     E: Engine<S, System = Mechanism<S>>,
     R: Recorder,
 {
-    fn go(&mut self, watch: Watcher<'_>) -> Outcome<(), S, E, R> {
-        self.await_sample(0);
-        self.begin_contacts()?;
+    fn go(&mut self, stretch: &Stretch<'_, S>, watch: Watcher<'_>) -> Outcome<(), S, E, R> {
+        if stretch.from.is_none() {
+            self.await_sample(0);
+            self.begin_contacts()?;
+        }
+        // at the start, or at an end that is a checkpoint
         self.sample(false)?;
         self.check_depths()?;
-        let end: S = self.schedule.duration();
+        let end: S = stretch.until.unwrap_or_else(|| self.schedule.duration());
         let corners = self.engine.system().corners();
         while self.engine.now().time < end {
             let before = self.engine.now().time;
@@ -288,6 +333,50 @@ where
             if S::EPSILON < f64::EPSILON || self.progress.steps.is_multiple_of(PROGRESS_EVERY) {
                 self.tell(watch)?;
             }
+        }
+        Ok(())
+    }
+
+    /// Takes apart what goes on from the checkpoint where the run stands.
+    fn keep(&mut self) -> Outcome<Checkpoint<S>, S, E, R> {
+        self.let_samples_go(&[])?;
+        self.flush()?;
+        self.scratch.clone_from(self.engine.now());
+        self.project()?;
+        self.withdraw()?;
+        Ok(Checkpoint {
+            modes: self.engine.system().modes().to_vec(),
+            sampled_until: self.window.seen_until(),
+            touching: self.touching.iter().map(|open| open.as_ref().map(Touching::hold)).collect(),
+            contacts: std::mem::take(&mut self.contacts),
+            peaks: std::mem::take(&mut self.peaks),
+            extremes: self.tracker.as_mut().map(|tracker| tracker.hold()),
+            energy: self.witness.energy,
+            segment: self.segment + 1,
+            rulings: self.counts,
+            ..Checkpoint::bare(self.scratch.clone(), self.next_sample, self.progress)
+        })
+    }
+
+    /// Goes on from a checkpoint.
+    fn take_up(&mut self, kept: &Checkpoint<S>) -> Outcome<(), S, E, R> {
+        for (k, mode) in kept.modes.iter().enumerate() {
+            self.engine.system().set_mode(k, *mode);
+        }
+        if let (Some(tracker), Some(records)) = (&mut self.tracker, &kept.extremes) {
+            tracker.take_up(records);
+        }
+        self.contacts = kept.contacts.clone();
+        self.peaks.clone_from(&kept.peaks);
+        self.window = Window::new(self.touching.len(), kept.sampled_until);
+        self.witness.energy = kept.energy;
+        (self.progress, self.segment, self.counts) = (kept.progress, kept.segment, kept.rulings);
+        self.await_sample(kept.next_sample);
+        self.restart(&kept.state)?;
+        for (k, held) in kept.touching.iter().enumerate() {
+            let rates = self.engine.system().contact_rates(k);
+            let open = held.as_ref().zip(rates);
+            self.touching[k] = open.map(|(held, rates)| Touching::take_up(held, rates));
         }
         Ok(())
     }

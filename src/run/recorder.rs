@@ -1,7 +1,10 @@
 //! What a run tells whoever keeps it.
 
 use crate::mechanism::{Measure, Measures, Observation};
+use crate::scalar::bits;
+use serde::{Deserialize, Serialize};
 use std::error::Error;
+use std::ops::ControlFlow;
 
 /// Kinds of event; the number is that of result files.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -31,45 +34,57 @@ pub struct Event {
 
 /// One contact, from its begin to its end, or to the end of the run while it is open. Penetration
 /// and force are true extrema.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Contact {
     /// Index of the clearance.
     pub clearance: usize,
     /// Begin (s).
+    #[serde(with = "bits")]
     pub begin: f64,
     /// End (s); NaN while open.
+    #[serde(with = "bits")]
     pub end: f64,
     /// Penetration rate at the begin (m/s), before a slow approach is raised.
+    #[serde(with = "bits")]
     pub impact_rate: f64,
     /// Largest penetration (m).
+    #[serde(with = "bits")]
     pub peak_penetration: f64,
     /// Time of the largest penetration (s).
+    #[serde(with = "bits")]
     pub peak_penetration_time: f64,
     /// Largest normal force (N).
+    #[serde(with = "bits")]
     pub peak_force: f64,
     /// Time of the largest normal force (s).
+    #[serde(with = "bits")]
     pub peak_time: f64,
     /// Dissipated by damping and friction (J).
+    #[serde(with = "bits")]
     pub dissipated: f64,
 }
 
 /// A local maximum of a normal force.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Peak {
     /// Time (s).
+    #[serde(with = "bits")]
     pub time: f64,
     /// Index of the clearance.
     pub clearance: usize,
     /// Normal force (N).
+    #[serde(with = "bits")]
     pub force: f64,
 }
 
 /// A value, and when it was (s).
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Extremum {
     /// The value.
+    #[serde(with = "bits")]
     pub value: f64,
     /// Its time (s).
+    #[serde(with = "bits")]
     pub time: f64,
 }
 
@@ -101,6 +116,17 @@ impl Revolution {
     }
 }
 
+/// A checkpoint of a run, for whoever keeps it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Kept {
+    /// Its number, from 1.
+    pub number: u64,
+    /// Its time (s).
+    pub time: f64,
+    /// All that the run goes on from, in one line of text.
+    pub text: String,
+}
+
 /// Keeps what a run tells. Samples come in the order of time; a contact comes when it ends, or,
 /// still open, when the run does.
 pub trait Recorder {
@@ -128,5 +154,11 @@ pub trait Recorder {
     fn revolution(&mut self, revolution: &Revolution) -> Result<(), Self::Error> {
         let _ = revolution;
         Ok(())
+    }
+
+    /// A checkpoint: what was told so far is to be kept for good. Says whether the run is to go on.
+    fn checkpoint(&mut self, kept: &Kept) -> Result<ControlFlow<()>, Self::Error> {
+        let _ = kept;
+        Ok(ControlFlow::Continue(()))
     }
 }

@@ -42,9 +42,11 @@ where
         Ok(())
     }
 
-    /// Time of the next sample of the grid, if it is not beyond now (s).
+    /// Time of the next sample of the grid, if it is not beyond now (s). At a checkpoint there is none
+    /// that a longer run had not.
     fn due(&self) -> Option<S> {
-        self.next_time.filter(|time| *time <= self.engine.now().time)
+        let only_here = self.goes_on && self.schedule.is_only_of_the_end(self.next_sample);
+        self.next_time.filter(|time| !only_here && *time <= self.engine.now().time)
     }
 
     /// Makes sample `k` of the grid the next.

@@ -24,18 +24,25 @@ enum Grid {
     At(Vec<Decimal>),
 }
 
+/// How many times an interval fits into a duration (s), and whether nothing is left.
+pub(super) fn multiples(duration: F256, interval: F256) -> (u64, bool) {
+    let quotient = duration / interval;
+    // a quotient of decimals that is whole may come out an ulp beside
+    let nearest = quotient.round();
+    let whole = (quotient - nearest).abs() <= quotient * F256::from_f64(1e-60);
+    let last = if whole { nearest } else { quotient.floor() };
+    (last.to_f64() as u64, whole)
+}
+
 impl Schedule {
     /// The schedule of a run of `duration` (s) sampled every `interval` (s), both positive.
     pub fn new(duration: &Decimal, interval: &Decimal) -> Self {
         let (duration, interval): (F256, F256) = (duration.value(), interval.value());
-        let quotient = duration / interval;
-        // a quotient of decimals that is whole may come out an ulp beside
-        let nearest = quotient.round();
-        let whole = (quotient - nearest).abs() <= quotient * F256::from_f64(1e-60);
-        let last = if whole { nearest } else { quotient.floor() };
+        let (last, whole) = multiples(duration, interval);
         // times are told as doubles: a multiple with the double of the duration is the duration
-        let told_as_the_end = !whole && (last * interval).to_f64() >= duration.to_f64();
-        let multiples = last.to_f64() as u64 + u64::from(!told_as_the_end);
+        let end = F256::from(last) * interval;
+        let told_as_the_end = !whole && end.to_f64() >= duration.to_f64();
+        let multiples = last + u64::from(!told_as_the_end);
         let grid = Grid::Uniform { interval, multiples, ends_between: !whole };
         Schedule { duration, grid, adaptive: false }
     }
@@ -87,6 +94,15 @@ impl Schedule {
             Grid::Uniform { .. } => self.duration(),
             // a duration with more digits than a double has may lie before its own rounding
             Grid::At(times) => times[k as usize].value::<S>().min(self.duration()),
+        }
+    }
+
+    /// Whether sample `k` is that of the duration where this is no multiple of the interval: a longer
+    /// run has none there.
+    pub(super) fn is_only_of_the_end(&self, k: u64) -> bool {
+        match &self.grid {
+            Grid::Uniform { multiples, ends_between, .. } => *ends_between && k == *multiples,
+            Grid::At(_) => false,
         }
     }
 

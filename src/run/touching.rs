@@ -2,7 +2,8 @@
 
 use super::recorder::{Contact, Peak};
 use crate::mechanism::ContactRates;
-use crate::scalar::Scalar;
+use crate::scalar::{Scalar, bits};
+use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
 
 /// A contact that has begun and not ended.
@@ -22,7 +23,32 @@ pub(super) struct Touching<S> {
     candidate: Option<Peak>,
 }
 
+/// What is kept of an open contact at a checkpoint.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(bound(serialize = "S: Scalar", deserialize = "S: Scalar"))]
+pub(super) struct Held<S> {
+    number: u64,
+    #[serde(with = "bits")]
+    dissipated_before: S,
+    pulled: bool,
+    #[serde(with = "bits")]
+    low: f64,
+    candidate: Option<Peak>,
+}
+
 impl<S: Scalar> Touching<S> {
+    /// What is kept of it.
+    pub fn hold(&self) -> Held<S> {
+        let Touching { number, last: _, dissipated_before, pulled, low, candidate } = *self;
+        Held { number, dissipated_before, pulled, low, candidate }
+    }
+
+    /// The contact that was held, with the rates that it has now.
+    pub fn take_up(held: &Held<S>, last: ContactRates<S>) -> Self {
+        let Held { number, dissipated_before, pulled, low, candidate } = *held;
+        Touching { number, last, dissipated_before, pulled, low, candidate }
+    }
+
     pub fn new(number: u64, rates: ContactRates<S>, dissipated_before: S) -> Self {
         let force = rates.force;
         Touching {
@@ -67,7 +93,7 @@ impl<S: Scalar> Touching<S> {
 }
 
 /// Contacts in the order of their begins, kept until all before them have ended.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub(super) struct Contacts {
     queue: VecDeque<(Contact, bool)>,
     first: u64,

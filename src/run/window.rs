@@ -19,18 +19,27 @@ pub(super) fn is_same_time(earlier: f64, time: f64) -> bool {
 }
 
 /// Observations that wait for their window to close.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(super) struct Window {
     waiting: Vec<(Observation, bool)>,
     /// Whether the first that waits is the last sample of the window before.
     carried: bool,
     /// By clearance: the last force peak of the present contact (N).
     last_peaks: Vec<f64>,
+    /// Time of the last observation before the first that waits (s).
+    seen_until: f64,
 }
 
 impl Window {
-    pub fn new(clearances: usize) -> Self {
-        Window { waiting: Vec::new(), carried: false, last_peaks: vec![f64::INFINITY; clearances] }
+    /// A window that opens behind a time (s).
+    pub fn new(clearances: usize, seen_until: f64) -> Self {
+        let last_peaks = vec![f64::INFINITY; clearances];
+        Window { waiting: Vec::new(), carried: false, last_peaks, seen_until }
+    }
+
+    /// Time of the last observation (s).
+    pub fn seen_until(&self) -> f64 {
+        self.waiting.last().map_or(self.seen_until, |(last, _)| last.time)
     }
 
     /// Adds an observation; `keep` has it sampled in any case. One at the time of the last, or so
@@ -38,6 +47,7 @@ impl Window {
     pub fn push(&mut self, observation: Observation, keep: bool) {
         match self.waiting.last_mut() {
             Some((last, kept)) if is_same_time(last.time, observation.time) => *kept |= keep,
+            None if is_same_time(self.seen_until, observation.time) => {}
             _ => self.waiting.push((observation, keep)),
         }
     }
@@ -135,7 +145,7 @@ mod tests {
     #[test]
     fn straight_lines_stay_within_a_hundredth_of_the_peak() {
         let force = |t: f64| 1000.0 * (t * std::f64::consts::PI).sin().powf(1.5);
-        let mut window = Window::new(1);
+        let mut window = Window::new(1, f64::NEG_INFINITY);
         for k in 0..=400 {
             let t = f64::from(k) / 800.0;
             window.push(at(t, force(t)), false);
@@ -154,7 +164,7 @@ mod tests {
 
     #[test]
     fn no_two_samples_are_a_few_ulps_apart() {
-        let mut window = Window::new(1);
+        let mut window = Window::new(1, f64::NEG_INFINITY);
         for (time, keep) in [(0.0, true), (0.3, true), (0.3 + 8e-17, true), (0.4, false)] {
             window.push(at(time, 0.0), keep);
         }
@@ -164,7 +174,7 @@ mod tests {
 
     #[test]
     fn what_is_marked_is_kept_and_times_increase() {
-        let mut window = Window::new(1);
+        let mut window = Window::new(1, f64::NEG_INFINITY);
         window.push(at(0.0, 0.0), true);
         window.push(at(1.0, 0.0), true);
         window.push(at(1.0, 0.0), false);

@@ -151,7 +151,7 @@ pub(super) struct Witness {
     /// Share of full friction that there may be more of it.
     share: f64,
     /// Largest energy or work seen (J).
-    energy: f64,
+    pub energy: f64,
 }
 
 impl Witness {

@@ -20,6 +20,15 @@ impl Scalar for f64 {
         x.to_f64()
     }
 
+    fn to_bits_text(self) -> String {
+        format!("{:016x}", self.to_bits())
+    }
+
+    fn from_bits_text(text: &str) -> Option<f64> {
+        let bits = u64::from_str_radix(text, 16).ok().filter(|_| text.len() == 16)?;
+        Some(f64::from_bits(bits))
+    }
+
     fn parse(literal: &str) -> Option<f64> {
         literal.parse().ok().filter(|x: &f64| x.is_finite())
     }

@@ -131,6 +131,15 @@ impl<S: Scalar> Scalar for Dual<S> {
         Dual::from_re(S::from_octuple(x))
     }
 
+    fn to_bits_text(self) -> String {
+        self.re.to_bits_text() + &self.eps.to_bits_text()
+    }
+
+    fn from_bits_text(text: &str) -> Option<Self> {
+        let (re, eps) = text.split_at_checked(text.len() / 2)?;
+        Some(Dual::new(S::from_bits_text(re)?, S::from_bits_text(eps)?))
+    }
+
     fn parse(literal: &str) -> Option<Self> {
         S::parse(literal).map(Dual::from_re)
     }

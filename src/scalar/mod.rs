@@ -4,6 +4,7 @@
 //! kinds are [`f64`] for every ordinary run, dual numbers for exact derivatives, and 71-digit
 //! floats for trajectories that can be called true.
 
+pub mod bits;
 mod decimal;
 mod double;
 mod dual;
@@ -62,6 +63,12 @@ pub trait Scalar:
 
     /// The number nearest to a 71-digit one.
     fn from_octuple(x: F256) -> Self;
+
+    /// All bits of the number, in hexadecimal.
+    fn to_bits_text(self) -> String;
+
+    /// The number of these bits; `None` of another text.
+    fn from_bits_text(text: &str) -> Option<Self>;
 
     /// The number a finite decimal literal means, rounded once; `None` if it is not one.
     fn parse(literal: &str) -> Option<Self>;

@@ -76,6 +76,17 @@ impl Scalar for F256 {
         x
     }
 
+    fn to_bits_text(self) -> String {
+        let (high, low) = self.to_bits();
+        format!("{high:032x}{low:032x}")
+    }
+
+    fn from_bits_text(text: &str) -> Option<F256> {
+        let half = |text: Option<&str>| u128::from_str_radix(text?, 16).ok();
+        let bits = half(text.get(..32)).zip(half(text.get(32..)))?;
+        (text.len() == 64).then(|| F256::from_bits(bits))
+    }
+
     fn parse(literal: &str) -> Option<F256> {
         F256::from_str(literal).ok().filter(|x| F256::is_finite(*x))
     }
