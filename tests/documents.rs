@@ -381,7 +381,6 @@ fn the_tables_of_keys_are_those_that_the_program_prints() {
     assert!(tables == read("docs/cases.md"), "freeplay schema --markdown > docs/cases.md");
     let told = printed(&[]);
     assert!(told == read("docs/case.schema.json"), "freeplay schema > docs/case.schema.json");
-    assert_eq!(serde_json::from_str::<Value>(&told).unwrap(), schema());
 }
 
 /// Every key of a table, and of those in it, is in the schema.

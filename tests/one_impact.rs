@@ -25,13 +25,13 @@ const LAWS: [Law; 15] = [
     ("hunt-crossley", 0.8, 1.5 * 0.2, None),
     ("herbert-mcwhannell", 0.8, 1.2 / 3.36, None),
     ("lee-wang", 0.8, 0.75 * 0.2, None),
-    ("gonthier", 0.5, 0.75 / 0.5, None),
-    ("zhiying-qishao", 0.5, 0.75 * 0.75 * std::f64::consts::E, None),
+    ("gonthier", 0.8, 0.36 / 0.8, None),
+    ("zhiying-qishao", 0.8, 0.27 * 1.491_824_697_641_270_3, None),
     ("flores", 0.8, 1.6 * 0.2 / 0.8, None),
     ("flores", 0.9, 8.0 * 0.1 / 4.5, None),
     ("hu-guo", 0.75, 1.5 * 0.25 / 0.75, None),
-    ("carvalho-martins", 0.5, 1.5 * 0.5 * 10.5 / 5.5, None),
-    ("exact", 0.5, 1.432_750_533_271_374_6, Some(0.5)),
+    ("carvalho-martins", 0.8, 0.3 * 10.2 / 8.2, None),
+    ("exact", 0.8, 0.37314620336505366, Some(0.8)),
 ];
 
 /// To and fro at a speed (m/s) with a law, until some impacts have been.
