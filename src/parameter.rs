@@ -17,9 +17,12 @@ pub struct Kind {
     pub example: &'static str,
     /// Its keys, in the order of the documents.
     pub keys: &'static [Key],
-    /// What keys must be together, or must not: the key that is wrong, and why.
-    pub also: Option<fn(&Values) -> Option<(&'static str, String)>>,
+    /// What holds for several keys together.
+    pub also: Option<Rule>,
 }
+
+/// What must hold for several keys together: the key that is wrong, and why.
+pub type Rule = fn(&Values) -> Option<(&'static str, String)>;
 
 /// A key of a kind.
 #[derive(Debug)]

@@ -15,7 +15,7 @@ const FRICTION: &str = "Law of the tangential force; left out: none";
 pub fn schema() -> Value {
     let mut schema: Value = serde_json::from_str(REST).unwrap_or_default();
     let kinds = [
-        ("joint", "A joint", one_of("kind", joint::KINDS, |kind| joint_keys(kind))),
+        ("joint", "A joint", one_of("kind", joint::KINDS, joint_keys)),
         ("drive", "A drive", one_of("kind", course::KINDS, |_| drive_keys())),
         ("load", "A load", one_of("kind", load::KINDS, |_| Map::new())),
         ("course", "A course of time", one_of("kind", course::KINDS, |_| Map::new())),

@@ -168,7 +168,7 @@ mod tests {
             let accelerations = [Motion::rest(), motion(&x[16..]), motion(&x[19..])];
             let lambda = [x[22], x[23]];
             let all = |constraint: &Constraint<f64>| {
-                let mut told = vec![[0.0; 2]; 3];
+                let mut told = [[0.0; 2]; 3];
                 constraint.position_error(0.0, &poses, &mut told[0]);
                 constraint.velocity_error(0.0, &poses, &motions, &mut told[1]);
                 let mut arms = [Vector::zero(); 2];
