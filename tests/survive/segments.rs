@@ -340,7 +340,7 @@ fn nothing_that_was_passed_is_lost_when_writes_fail() {
     desk.run(&whole).assert_code(0);
     let kept = [&run(&a, "a.h5", &keys)[..], &["--no-tangent"]].concat();
     let resume = [&kept[..], &["--resume"]].concat();
-    for (errno, lasts, stride) in [(EIO, "0", 1), (ENOSPC, "1", 5)] {
+    for (errno, lasts, stride) in [(EIO, "0", 3), (ENOSPC, "1", 11)] {
         let mut failures = 0;
         for call in (1..).step_by(stride) {
             let mark = desk.path("mark");
