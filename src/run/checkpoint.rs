@@ -121,6 +121,7 @@ impl<S: Scalar> Checkpoint<S> {
         let differs = [
             ("coordinates", kept.state.q.len() != start.q.len()),
             ("velocities", kept.state.v.len() != start.v.len()),
+            ("inner states", kept.state.z.len() != start.z.len()),
             ("integrals", kept.state.integrals.len() != mechanism.integrals()),
             ("clearances", kept.modes.len() != clearances || kept.touching.len() != clearances),
             ("extremes", extremes.is_some_and(|records| !records.fit(&measures))),
