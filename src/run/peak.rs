@@ -137,6 +137,7 @@ where
         self.hardest(k, time.to_f64(), end.force.to_f64());
         if let Some(touching) = self.touching[k].as_mut() {
             touching.pulled |= end.force < S::zero();
+            touching.beside(time.to_f64(), end.force.to_f64(), noise);
             self.peaks.extend(touching.follow(end.force.to_f64(), noise));
         }
         Ok(())

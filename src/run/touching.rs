@@ -69,6 +69,16 @@ impl<S: Scalar> Touching<S> {
         }
     }
 
+    /// Takes note of the force (N) at the end of a step: beside a maximum it may be the higher by what
+    /// the tolerance leaves, up to `noise` (N), and is the maximum then.
+    pub fn beside(&mut self, time: f64, force: f64, noise: f64) {
+        if let Some(peak) = &mut self.candidate {
+            if force > peak.force && force - peak.force <= noise {
+                (peak.time, peak.force) = (time, force);
+            }
+        }
+    }
+
     /// Follows the force (N); returns a maximum that now stands out on both sides.
     pub fn follow(&mut self, force: f64, noise: f64) -> Option<Peak> {
         let fallen = self.candidate.filter(|peak| peak.force - force > noise);
@@ -150,6 +160,18 @@ mod tests {
         assert_eq!(touching.follow(9.999, 0.01), None);
         assert_eq!(touching.follow(9.0, 0.01), Some(peak(10.0)));
         assert_eq!(touching.follow(8.0, 0.01), None);
+    }
+
+    #[test]
+    fn the_end_of_a_step_beside_a_maximum_may_be_the_higher() {
+        let mut touching = touching();
+        touching.maximum(peak(10.0));
+        touching.beside(1.5, 9.999, 0.01);
+        assert_eq!(touching.candidate, Some(peak(10.0)));
+        touching.beside(1.5, 10.001, 0.01);
+        assert_eq!(touching.candidate, Some(Peak { time: 1.5, ..peak(10.001) }));
+        touching.beside(2.0, 11.0, 0.01);
+        assert_eq!(touching.candidate, Some(Peak { time: 1.5, ..peak(10.001) }));
     }
 
     #[test]
