@@ -72,11 +72,11 @@ impl<S: Scalar> Touching<S> {
     /// Takes note of the force (N) at the end of a step: beside a maximum it may be the higher by what
     /// the tolerance leaves, up to `noise` (N), and is the maximum then.
     pub fn beside(&mut self, time: f64, force: f64, noise: f64) {
-        if let Some(peak) = &mut self.candidate {
-            if force > peak.force && force - peak.force <= noise {
-                (peak.time, peak.force) = (time, force);
-            }
-        }
+        let raised = |peak: &Peak| force > peak.force && force - peak.force <= noise;
+        self.candidate = self.candidate.map(|peak| match raised(&peak) {
+            true => Peak { time, force, ..peak },
+            false => peak,
+        });
     }
 
     /// Follows the force (N); returns a maximum that now stands out on both sides.
