@@ -13,6 +13,8 @@ use fastrand::Rng;
 use freeplay::run::EventKind;
 use freeplay::scalar::{F256, Scalar};
 
+/// Series that a trial may take: a wheel that stays on an edge takes them without end.
+const MOST_SERIES: usize = 1000;
 const ORDER: usize = 50;
 /// Places on a series that are looked at for edges.
 const LOOKS: i64 = 16;
@@ -77,8 +79,8 @@ impl Wheel {
         Series { begin, angle: a, rate: w }
     }
 
-    /// All series and kinks until a time.
-    fn follow(&self, angle: F256, rate: F256, until: F256) -> (Vec<Series>, Vec<F256>) {
+    /// All series and kinks until a time; `None` if there are too many.
+    fn follow(&self, angle: F256, rate: F256, until: F256) -> Option<(Vec<Series>, Vec<F256>)> {
         let edges = self.edges();
         let (mut t, mut angle, mut rate) = (F256::ZERO, angle, rate);
         let mut region = edges.iter().filter(|edge| **edge < rate).count();
@@ -117,8 +119,11 @@ impl Wheel {
             }
             t += step;
             all.push(series);
+            if all.len() > MOST_SERIES {
+                return None;
+            }
         }
-        (all, kinks)
+        Some((all, kinks))
     }
 }
 
@@ -172,6 +177,15 @@ pub fn root(f: impl Fn(F256) -> F256, mut a: F256, mut b: F256) -> F256 {
 }
 
 pub fn draw(rng: &mut Rng) -> Aimed {
+    loop {
+        if let Some(aimed) = drawn(rng) {
+            return aimed;
+        }
+    }
+}
+
+/// A trial, if what it does is known within so many series.
+fn drawn(rng: &mut Rng) -> Option<Aimed> {
     let pendulum = rng.f64() < 0.75;
     let [ux, uy] = direction(rng);
     let mass = Decimal::draw(rng, 0.05, 1.0);
@@ -236,7 +250,7 @@ pub fn draw(rng: &mut Rng) -> Aimed {
         low: v0.value() / r,
         high: v1.value() / r,
     };
-    let (series, kinks) = wheel.follow(angle.value(), rate.value(), until.value());
+    let (series, kinks) = wheel.follow(angle.value(), rate.value(), until.value())?;
     let begins = Event { time: F256::ZERO, kind: EventKind::ContactBegins, clearance: 0 };
     let kinks =
         kinks.iter().map(|time| Event { time: *time, kind: EventKind::FrictionKink, clearance: 0 });
@@ -255,12 +269,12 @@ pub fn draw(rng: &mut Rng) -> Aimed {
             or: None,
         })
     };
-    Aimed {
+    Some(Aimed {
         family: "",
         text,
         at: Box::new(at),
         events: Some(events),
         known: until.value(),
         peaks: Vec::new(),
-    }
+    })
 }
