@@ -218,7 +218,13 @@ async function playFilm(bytes) {
     // Such files do not tell their length: the end is sought beyond it.
     film.currentTime = 1e6;
     await happens("seeked");
-    return { width: film.videoWidth, first, last: frame(), seconds: film.currentTime };
+    // What is sought is drawn a little later than it is found.
+    let last = frame();
+    for (let look = 0; look < 100 && last === first; look++) {
+      await new Promise((done) => setTimeout(done, 50));
+      last = frame();
+    }
+    return { width: film.videoWidth, first, last, seconds: film.currentTime };
   }, bytes.toString("base64"));
   await page.close();
   const hash = (text) => createHash("sha256").update(text).digest("hex");

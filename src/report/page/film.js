@@ -14,15 +14,15 @@ const KINDS = [
 const FRAMES_PER_SECOND = 30;
 const BITS_PER_SECOND = 8e6;
 
-/** How long the last frame stays (ms). */
-const LAST_FRAME = 200;
-
 /** How often what comes out of the encoder is looked at (ms), and how often at most. */
 const LOOK = 50;
 const MOST_LOOKS = 100;
 
 /** A file of no more bytes has no frame in it. */
 const EMPTY = 500;
+
+/** How many pieces of the film show the last moment, so that the encoder has not left it out. */
+const LAST_PIECES = 5;
 
 /** Height of the line of words over the drawing (CSS pixels). */
 const WORDS = 30;
@@ -72,16 +72,15 @@ export class Film {
     recorder.start(LOOK);
     this.tell();
     // Encoders take their time to begin; what is played before that is lost.
-    await this.encoded();
+    await this.showUntil(() => chunks.reduce((sum, { size }) => sum + size, 0) > EMPTY);
     this.clock.play();
   }
 
-  /** Shows the present frame until frames have come out of the encoder. */
-  async encoded() {
-    for (let look = 0; look < MOST_LOOKS; look++) {
+  /** Shows the present frame until what has come out of the encoder is enough. */
+  async showUntil(enough) {
+    for (let look = 0; look < MOST_LOOKS && !enough(); look++) {
       this.compose(this.canvas);
       await new Promise((done) => setTimeout(done, LOOK));
-      if (this.chunks.reduce((sum, { size }) => sum + size, 0) > EMPTY) return;
     }
   }
 
@@ -93,12 +92,13 @@ export class Film {
   }
 
   async end() {
-    const { recorder } = this;
+    const { recorder, chunks } = this;
     this.recorder = null;
     this.clock.pause();
     this.clock.set(Math.min(this.clock.time, this.to));
-    await this.encoded();
-    setTimeout(() => recorder.stop(), LAST_FRAME);
+    const before = chunks.length;
+    await this.showUntil(() => chunks.length >= before + LAST_PIECES);
+    recorder.stop();
   }
 
   tell() {
