@@ -37,6 +37,9 @@ const SEED: u64 = 14;
 /// Of this seed, a trial in which a linkage passes a dead centre 4e-10 m from it.
 const BESIDE_DEAD_CENTRE: u64 = 54;
 
+/// One in which a contact's end is 6e-16 s off, of 3.5e-5 s.
+const HARDLY_LEFT: u64 = 1337;
+
 /// A number from the environment.
 fn asked(name: &str, otherwise: u64) -> u64 {
     std::env::var(name).map_or(otherwise, |text| text.parse().expect("a number"))
@@ -71,6 +74,15 @@ fn a_trial_that_takes_another_pair_is_certified_by_it() {
     let kinds: Vec<&str> = verdict.falls.iter().map(|fall| fall.kind).collect();
     assert!(verdict.certified && verdict.judged > 10, "{}", verdict.judged);
     assert_eq!(kinds, ["takes another pair"]);
+}
+
+/// A contact that ends where the wall is hardly left: the state is certified, and the time of that end
+/// to fewer digits than it, which is said.
+#[test]
+fn the_time_of_an_event_that_grazes_is_no_truer_than_is_said() {
+    let verdict = judge::judge(&families::draw(SEED, HARDLY_LEFT));
+    let falls: Vec<String> = verdict.falls.into_iter().map(|fall| fall.words).collect();
+    assert!(verdict.certified && falls.is_empty(), "{falls:?}");
 }
 
 /// Two branches cross but for a hair where the crank passes, and a stride that does not see the hair

@@ -535,8 +535,8 @@ impl Horizon {
                 stopped: file.text("horizon_stopped").map(str::to_owned),
             }));
         }
-        let certified = file.over_time("reference_digits")?;
-        let of = |name: &str| file.over_time(name);
+        let certified = file.along(Dimension::Time, "reference_digits")?;
+        let of = |name: &str| file.along(Dimension::Time, name);
         let Some(state) = certified.clone().map_or_else(|| of("digits_left"), |of| Ok(Some(of)))?
         else {
             return Ok(None);

@@ -46,6 +46,7 @@ impl Certificate {
                 "of": counted().count(),
                 "found": late.clone().count(),
                 "largest_time_error": late.map(f64::abs).reduce(f64::max),
+                "true_times_known_to": reference.event_times_known_to(reference.followed_until()),
             },
             "peaks": {
                 "of": self.peaks.of,

@@ -2,7 +2,8 @@
 //!
 //! What is claimed is on the safe side: a reference is said to be wrong by twice what its looser
 //! companion is off, and by what it loses when written as doubles; a run by its distance from the
-//! reference and what the reference is wrong by.
+//! reference and what the reference is wrong by. The time of an event that grazes may be known to
+//! fewer digits than the state around it, and has a bound of its own.
 
 mod cross;
 mod growth;
@@ -25,7 +26,7 @@ pub use tangent::{Tangent, tangent};
 use crate::case::Case;
 use crate::digits::{self, Parting, Parts, Scales, digits};
 use crate::record::ResultFile;
-use crate::run::{Event, Peak, Schedule, Trajectory, Watcher};
+use crate::run::{Event, EventKind, Peak, Schedule, Trajectory, Watcher};
 use crate::simulate::{self, Simulation, Statistics};
 use std::convert::Infallible;
 use std::f64::consts::LOG10_E;
@@ -46,6 +47,9 @@ pub struct Reference {
     pub trajectory: Trajectory,
     /// What it may be wrong by, scaled, at each sample.
     pub wrong: Vec<Parts<f64>>,
+    /// What the time of each event may be wrong by (s); NaN where it is not known, as in files of
+    /// older programs.
+    pub event_times_wrong: Vec<f64>,
     /// Scales of the errors.
     pub scales: Scales,
     /// Tolerances of the two runs behind it.
@@ -113,14 +117,19 @@ pub fn reference(
 ) -> Result<Reference, Error> {
     let pair = reference::references(case, schedule, digits, watch)?;
     let growth = reference::growth(case, schedule, &pair, watch)?;
-    let scales = pair.scales;
+    // what the start is off by, which no two runs from it show, grows along with them
     let mut grown: f64 = 1.0;
     let mut factors = growth.factors.iter();
-    let wrong = (pair.tight.samples.iter().zip(&pair.apart))
-        .map(|(sample, apart)| {
-            // what the start is off by, which no two runs from it show, grows along with them
+    let shared: Vec<f64> = (pair.apart.iter())
+        .map(|_| {
             grown = factors.next().map_or(grown, |factor| grown.max(*factor));
-            let shared = pair.start * grown;
+            pair.start * grown
+        })
+        .collect();
+    let event_times_wrong = event_times_wrong(&pair, &shared);
+    let scales = pair.scales;
+    let wrong = (pair.tight.samples.iter().zip(&pair.apart).zip(&shared))
+        .map(|((sample, apart), shared)| {
             scales.rounding(sample).zip(*apart, |lost, apart| lost + 2.0 * apart + shared)
         })
         .collect::<Vec<_>>();
@@ -135,6 +144,7 @@ pub fn reference(
     let mut reference = Reference {
         trajectory: pair.tight,
         wrong,
+        event_times_wrong,
         scales,
         tolerances: pair.tolerances,
         growth,
@@ -146,6 +156,31 @@ pub fn reference(
         reference.cut(reference.wrong.len());
     }
     Ok(reference)
+}
+
+/// What the time of each event of a pair may be wrong by (s); `shared` is what the state may be at
+/// each sample for the start that both share, scaled. Such an error moves an event by the time that
+/// the wall, or the mechanism as it turns, takes to make up for it.
+fn event_times_wrong(pair: &reference::Pair, shared: &[f64]) -> Vec<f64> {
+    let Scales { clearances, angular_velocity, .. } = &pair.scales;
+    let samples = &pair.tight.samples;
+    (pair.tight.events.iter().zip(&pair.events_apart))
+        .map(|(event, apart)| {
+            let next = samples.partition_point(|sample| sample.time < event.time);
+            let shared = shared.get(next).or(shared.last()).copied().unwrap_or(0.0);
+            let turning = 1.0 / angular_velocity;
+            let slowness = match event.kind {
+                EventKind::ContactBegins | EventKind::ContactEnds => {
+                    turning.max(clearances[event.clearance] / event.rate.abs())
+                }
+                EventKind::FrictionKink | EventKind::Tension => turning,
+            };
+            // a start without an error moves nothing, however long an event takes
+            let moved = if shared > 0.0 { shared * slowness } else { 0.0 };
+            let rounded = event.time.abs().next_up() - event.time.abs();
+            2.0 * apart + moved + rounded
+        })
+        .collect()
 }
 
 /// An error with all its causes.
@@ -272,6 +307,7 @@ impl Reference {
         self.growth.factors.truncate(samples);
         let end = all.last().map_or(0.0, |sample| sample.time);
         events.retain(|event| event.time <= end);
+        self.event_times_wrong.truncate(events.len());
         contacts.retain(|contact| contact.end <= end);
         peaks.retain(|peak| peak.time <= end);
         revolutions.retain(|revolution| revolution.end <= end);
@@ -283,6 +319,15 @@ impl Reference {
     fn followed_until(&self) -> f64 {
         let last = self.trajectory.samples.last().map_or(0.0, |sample| sample.time);
         self.growth.double_precision_ends.map_or(last, |ends| ends.min(last))
+    }
+
+    /// What the least certain time of an event may be wrong by (s), up to a time (s), where that is
+    /// known of all.
+    pub fn event_times_known_to(&self, until: f64) -> Option<f64> {
+        let within = self.trajectory.events.iter().zip(&self.event_times_wrong);
+        let within = within.filter(|(event, _)| event.time <= until).map(|(_, wrong)| *wrong);
+        let most = within.reduce(|a, b| if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) });
+        most.filter(|most| most.is_finite())
     }
 
     /// Time (s) up to which the growth of errors is known, where that is not the end.
@@ -321,7 +366,7 @@ impl Certificate {
 mod tests {
     use super::*;
     use crate::mechanism::Observation;
-    use crate::run::{Contact, EventKind};
+    use crate::run::Contact;
 
     fn event(time: f64) -> Event {
         Event { time, clearance: 0, kind: EventKind::ContactBegins, rate: 1.0 }
@@ -353,6 +398,7 @@ mod tests {
         Reference {
             scales: Scales::of(&trajectory.samples, &sizes),
             wrong: vec![Parts::all(1e-16); 5],
+            event_times_wrong: vec![1e-16; 5],
             trajectory,
             tolerances: [1e-29, 1e-24],
             growth: Growth { factors: vec![1.0; 5], double_precision_ends: Some(3.5) },
@@ -370,6 +416,7 @@ mod tests {
         let lengths = [samples.len(), events.len(), contacts.len(), peaks.len()];
         assert_eq!(lengths, [3, 2, 2, 2]);
         assert_eq!((reference.wrong.len(), reference.growth.factors.len()), (3, 3));
+        assert_eq!(reference.event_times_wrong.len(), 2);
         assert_eq!(reference.growth.double_precision_ends, None);
     }
 

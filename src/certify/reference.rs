@@ -44,6 +44,9 @@ pub struct Pair {
     pub tight: Trajectory,
     /// Scaled differences of the two at each sample of the tighter one that both have.
     pub apart: Vec<Parts<f64>>,
+    /// Distance (s) of each event of the tighter one to its like in the looser; infinite where there is
+    /// none.
+    pub events_apart: Vec<f64>,
     /// Tolerances of the tighter and of the looser run.
     pub tolerances: [f64; 2],
     /// What the start, which both share, may be off by, over its size.
@@ -281,7 +284,12 @@ fn pair(
         let before = |sample: &Observation| sample.time < parting.event.time;
         apart.truncate(tight.samples.partition_point(before));
     }
-    Ok(Pair { tight, apart, tolerances, start, scales, parting, stopped })
+    let events_apart = (tight.events.iter().zip(&likes.of_reference))
+        .map(|(event, like)| {
+            like.map_or(f64::INFINITY, |like| (loose.events[like].time - event.time).abs())
+        })
+        .collect();
+    Ok(Pair { tight, apart, events_apart, tolerances, start, scales, parting, stopped })
 }
 
 /// One run; that the runs of a pair have parted is no error.
@@ -435,6 +443,7 @@ mod tests {
         let source = simulate::Error::Interrupted { time: samples as f64 };
         Pair {
             apart: vec![Parts::all(1e-20); samples as usize],
+            events_apart: Vec::new(),
             scales: Scales::of(&tight.samples, &sizes),
             tight,
             tolerances,

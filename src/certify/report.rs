@@ -118,7 +118,11 @@ impl Certificate {
         let (found, of) = (late.len(), counted().count());
         let off =
             if found > 0 { format!(", off by {farthest:.1e} s at most") } else { String::new() };
-        writeln!(f, "  events       the run has {found} of {of}{off}{}", self.while_doubles())?;
+        let known = match self.reference.event_times_known_to(self.reference.followed_until()) {
+            Some(known) => format!("; their true times are known to {known:.1e} s"),
+            None => String::new(),
+        };
+        writeln!(f, "  events       the run has {found} of {of}{off}{}{known}", self.while_doubles())?;
         let peaks = &self.peaks;
         let off = match peaks.found {
             0 => String::new(),

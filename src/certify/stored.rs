@@ -88,6 +88,9 @@ const CLAIMS: [Column; 6] = [
     }),
 ];
 
+/// What the file says of the time of an event.
+const TIME_BOUND: &str = "event_time_bound";
+
 impl Certificate {
     /// The datasets that a certificate adds to a result file.
     pub fn series(&self) -> Vec<Series> {
@@ -121,6 +124,14 @@ impl Certificate {
             along: Dimension::Event,
             values: late.map(|late| late.unwrap_or(f64::NAN)).collect(),
         };
+        let bound = Series {
+            name: TIME_BOUND,
+            unit: "s",
+            long_name: "how far the true time of this event may be from the one that is told",
+            stored: Values::Real,
+            along: Dimension::Event,
+            values: self.reference.event_times_wrong.clone(),
+        };
         let factors = &self.reference.growth.factors;
         let growth = Series {
             name: "error_growth",
@@ -132,7 +143,7 @@ impl Certificate {
                 .map(|place| factors.get(place).copied().unwrap_or(f64::NAN))
                 .collect(),
         };
-        claims.chain([in_run, by, growth]).collect()
+        claims.chain([in_run, by, bound, growth]).collect()
     }
 }
 
@@ -163,7 +174,7 @@ impl Reference {
 pub(super) fn read(case: &Case, file: &ResultFile) -> Result<Reference, NotAReference> {
     let name = || file.path().display().to_string();
     let claim = |of: &'static str| {
-        let digits = file.over_time(of)?;
+        let digits = file.along(Dimension::Time, of)?;
         digits.ok_or_else(|| NotAReference::NoCertificate { file: name(), what: of })
     };
     let state = claim("reference_digits")?;
@@ -187,6 +198,9 @@ pub(super) fn read(case: &Case, file: &ResultFile) -> Result<Reference, NotARefe
     let wrong = (state.iter().zip(&forces).zip(&torque))
         .map(|((s, f), t)| Parts { state: wrong(*s), forces: wrong(*f), torque: wrong(*t) })
         .collect();
+    let events = file.events()?;
+    let event_times_wrong = file.along(Dimension::Event, TIME_BOUND)?;
+    let event_times_wrong = event_times_wrong.unwrap_or_else(|| vec![f64::NAN; events.len()]);
     let clearances = (0..file.clearances().len())
         .map(|k| file.number(&format!("scale_clearance_{k}")).unwrap_or(1.0))
         .collect();
@@ -204,12 +218,13 @@ pub(super) fn read(case: &Case, file: &ResultFile) -> Result<Reference, NotARefe
     let mut reference = Reference {
         trajectory: Trajectory {
             samples,
-            events: file.events()?,
+            events,
             contacts: file.contacts()?,
             peaks: file.peaks()?,
             revolutions: file.revolutions()?,
         },
         wrong,
+        event_times_wrong,
         scales,
         tolerances: [need("reference_tolerance_tight")?, need("reference_tolerance_loose")?],
         growth: Growth {

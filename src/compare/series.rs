@@ -4,7 +4,7 @@ use super::Error;
 use super::quantity::{Column, Part, Quantity};
 use crate::digits::Scales;
 use crate::digits::{Grade, whole_turns};
-use crate::record::{ResultFile, Seal};
+use crate::record::{Dimension, ResultFile, Seal};
 
 /// Digits to which a reference is certified, over its own samples.
 #[derive(Debug, Clone, PartialEq)]
@@ -24,7 +24,7 @@ impl Certificate {
     /// # Errors
     /// The file was changed after it was sealed, or what reading meets.
     pub fn of(file: &ResultFile) -> Result<Option<Certificate>, Error> {
-        let Some(state) = file.over_time("reference_digits")? else { return Ok(None) };
+        let Some(state) = file.along(Dimension::Time, "reference_digits")? else { return Ok(None) };
         let seal = file.seal()?;
         if seal == Seal::Broken {
             return Err(Error::BrokenSeal { path: file.path().to_owned() });
@@ -32,8 +32,8 @@ impl Certificate {
         Ok(Some(Certificate {
             times: file.times()?,
             state,
-            forces: file.over_time("reference_digits_forces")?,
-            torque: file.over_time("reference_digits_torque")?,
+            forces: file.along(Dimension::Time, "reference_digits_forces")?,
+            torque: file.along(Dimension::Time, "reference_digits_torque")?,
             sealed: seal == Seal::Whole,
         }))
     }

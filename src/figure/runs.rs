@@ -113,7 +113,7 @@ impl Run {
 
     /// A single column over time that not every file has.
     pub fn optional_column(&self, dataset: &str) -> Result<Option<Vec<f64>>, Error> {
-        let column = self.file.over_time(dataset)?;
+        let column = self.file.along(Dimension::Time, dataset)?;
         Ok(column.map(|column| column[self.window.clone()].to_vec()))
     }
 

@@ -244,20 +244,21 @@ impl ResultFile {
         Ok(Table { dataset, rows: rows.len(), width, values })
     }
 
-    /// A dataset over time that not every result has, such as `reference_digits`; `None` where it
-    /// is missing.
+    /// A dataset along a dimension that not every result has, such as `reference_digits` along time;
+    /// `None` where it is missing.
     ///
     /// # Errors
-    /// What reading it meets, or [`Error::Damaged`] if it has not a value for each sample.
-    pub fn over_time(&self, name: &str) -> Result<Option<Vec<f64>>, Error> {
+    /// What reading it meets, or [`Error::Damaged`] if it has not a value for each place.
+    pub fn along(&self, dimension: Dimension, name: &str) -> Result<Option<Vec<f64>>, Error> {
         if !self.file.link_exists(name) {
             return Ok(None);
         }
         let read = || self.file.dataset(name)?.read_raw::<f64>();
         let values = read().map_err(|error| self.failed(&format!("read {name} of"), error))?;
-        let (found, samples) = (values.len(), self.length(Dimension::Time));
-        if found != samples {
-            return Err(self.damaged(format!("{name} has {found} values for {samples} samples")));
+        let (found, places) = (values.len(), self.length(dimension));
+        if found != places {
+            let of = dimension.name();
+            return Err(self.damaged(format!("{name} has {found} values, {of} has {places}")));
         }
         Ok(Some(values))
     }

@@ -6,7 +6,7 @@ use freeplay::case::{Case, Changes};
 use freeplay::certify::{self, Error, Reference, Stage};
 use freeplay::digits::digits;
 use freeplay::mechanism::Observation;
-use freeplay::run::{self, EventKind, Progress, Schedule};
+use freeplay::run::{EventKind, Progress, Schedule};
 use freeplay::scalar::{F256, Scalar};
 use freeplay::simulate::Simulation;
 use nix::sys::resource::{UsageWho, getrusage};
@@ -22,7 +22,7 @@ use std::time::Duration;
 /// the machine.
 const TOO_LONG: f64 = 120.0;
 const HANGS: f64 = 240.0;
-/// Share of the time that an event may be off.
+/// An event so near to the end, as a share of the time, may be on either side of it.
 const LATE: f64 = 1e-12;
 
 /// What fell: its kind, and the words.
@@ -174,7 +174,7 @@ impl Verdict {
         let last = reference.trajectory.samples.last().map_or(0.0, |sample| sample.time);
         let until = aimed.known.to_f64().min(last);
         if let Some(events) = &aimed.events {
-            self.hold_events(events, &reference.trajectory.events, until);
+            self.hold_events(events, reference, until);
             self.hold_peaks(aimed, reference, until);
         }
     }
@@ -206,8 +206,10 @@ impl Verdict {
         }
     }
 
-    /// Whether events are the same until a time (s), clearance by clearance.
-    fn hold_events(&mut self, truth: &[Event], found: &[run::Event], until: f64) {
+    /// Whether events are the same until a time (s), clearance by clearance, and their times as true
+    /// as is said of each.
+    fn hold_events(&mut self, truth: &[Event], reference: &Reference, until: f64) {
+        let found = &reference.trajectory.events;
         let clearances = truth.iter().map(|event| event.clearance);
         let clearances = clearances.chain(found.iter().map(|event| event.clearance)).max();
         for clearance in 0..=clearances.unwrap_or(0) {
@@ -220,18 +222,16 @@ impl Verdict {
                 .filter(|(_, time)| *time <= until)
                 .collect();
             truth.sort_by(|a, b| a.1.total_cmp(&b.1));
-            let found: Vec<(EventKind, f64)> = found
-                .iter()
-                .filter(|event| event.clearance == clearance && event.time <= until)
-                .map(|event| (event.kind, event.time))
+            let found: Vec<(EventKind, f64, f64)> = (found.iter())
+                .zip(&reference.event_times_wrong)
+                .filter(|(event, _)| event.clearance == clearance && event.time <= until)
+                .map(|(event, wrong)| (event.kind, event.time, *wrong))
                 .collect();
-            let inner =
-                |events: &[(EventKind, f64)]| events.iter().filter(|event| event.1 < edge).count();
             self.judged += truth.len();
-            let same = truth.iter().zip(&found).all(|(truth, found)| {
-                truth.0 == found.0 && (truth.1 - found.1).abs() <= LATE * until
-            });
-            let all = inner(&truth) <= found.len() && inner(&found) <= truth.len();
+            let same = (truth.iter().zip(&found))
+                .all(|(truth, found)| truth.0 == found.0 && (truth.1 - found.1).abs() <= found.2);
+            let all = truth.iter().filter(|event| event.1 < edge).count() <= found.len()
+                && found.iter().filter(|event| event.1 < edge).count() <= truth.len();
             if !same || !all {
                 self.fall(
                     "events not those of the truth",
