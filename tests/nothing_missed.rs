@@ -667,3 +667,13 @@ fn where_tension_is_cut_the_energy_balance_closes() {
         }
     }
 }
+
+/// At 1e-6 a step goes so far beyond the end of one contact, whence time runs back, that it ends
+/// before it began: nothing else is to be looked for there.
+#[test]
+fn beyond_the_end_of_a_contact_nothing_is_looked_for() {
+    let set = ["run.duration=0.06", "run.sample_interval=3e-5"];
+    let chain = mechanism("chain-of-four", "explicit", 1e-6, &set);
+    let kept = sound(&chain, "explicit at 1e-6");
+    assert!(kept.contacts.len() > 60, "{} contacts", kept.contacts.len());
+}

@@ -156,6 +156,8 @@ struct Ran {
     cpu: f64,
     /// Simulated time it came to (s).
     time: f64,
+    /// Steps, as it last told of them.
+    steps: u64,
 }
 
 enum End {
@@ -216,9 +218,9 @@ fn run(drawn: &Drawn, case: &Case, limit: Limit) -> Option<Ran> {
             last_event: 0.0,
             energy: Energy::default(),
         };
-        let (began, mut time) = (cpu(), 0.0);
+        let (began, mut time, mut steps) = (cpu(), 0.0, 0);
         let mut look = |progress: &Progress| {
-            time = progress.time;
+            (time, steps) = (progress.time, progress.steps);
             let over = progress.steps >= limit.steps || cpu() - began > limit.cpu;
             match over || stop.load(Ordering::Relaxed) {
                 true => ControlFlow::Break(()),
@@ -235,7 +237,7 @@ fn run(drawn: &Drawn, case: &Case, limit: Limit) -> Option<Ran> {
         };
         let cpu = cpu() - began;
         // nobody waits any more where the run took too long
-        let _ = send.send(Ran { watch, end, cpu, time });
+        let _ = send.send(Ran { watch, end, cpu, time, steps });
     };
     std::thread::spawn(work);
     let ran = receive.recv_timeout(Duration::from_secs(HANGS)).ok();
@@ -360,7 +362,9 @@ fn judge(verdict: &mut Verdict, ran: &Ran, what: &str, tolerance: f64, set: &[St
         );
     }
     let Energy { residual, scale } = watch.energy;
-    if residual > 1e-6 * scale {
+    // each step may be off by the tolerance
+    let allowed = f64::max(1e-6, ran.steps as f64 * tolerance);
+    if residual > allowed * scale {
         let kind = match tolerance {
             1e-12 => "energy at 1e-12",
             1e-9 => "energy at 1e-9",

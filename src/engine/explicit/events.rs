@@ -239,20 +239,43 @@ impl<S: Scalar, Y: System<S>> Explicit<S, Y> {
         }
     }
 
-    /// What comes first in the step, beside what it was cut at already.
+    /// What comes first in the step, beside what it was cut at already. Beyond the zero of a root
+    /// time goes back, where nothing can be looked for by time: a step is cut there before anything.
     fn first_candidate(
         &mut self,
         landed: Option<Target<S>>,
         end: S,
     ) -> Result<Option<Candidate<S>>, ExplicitError> {
-        let mut first = if self.here.y[self.flow.time()] > end { self.at_end(end) } else { None };
+        let root = self.first_event(landed, true)?;
+        let time = self.flow.time();
+        if root.is_some() || self.here.y[time] < self.from.y[time] {
+            return Ok(root);
+        }
+        let event = self.first_event(landed, false)?;
+        let end = if self.here.y[time] > end { self.at_end(end) } else { None };
+        Ok(match (event, end) {
+            (Some(event), Some(end)) if event.bracket[1] < end.bracket[1] => Some(event),
+            (event, None) => event,
+            (_, end) => end,
+        })
+    }
+
+    /// The first event of a root in the step, or of what is no root.
+    fn first_event(
+        &mut self,
+        landed: Option<Target<S>>,
+        of_roots: bool,
+    ) -> Result<Option<Candidate<S>>, ExplicitError> {
+        let mut first: Option<Candidate<S>> = None;
         for k in 0..self.standing.len() {
-            if !self.is_watched(k) || landed == Some(Target::Event(k)) {
+            let is_root = matches!(self.flow.gauges()[k], Gauge::Root { .. });
+            let passed_over = is_root != of_roots || landed == Some(Target::Event(k));
+            if passed_over || !self.is_watched(k) {
                 continue;
             }
             if let Some([low, high]) = self.first_rise(k)? {
                 let bracket = [low.0, high.0];
-                if first.is_none_or(|first: Candidate<S>| bracket[1] < first.bracket[1]) {
+                if first.is_none_or(|first| bracket[1] < first.bracket[1]) {
                     let guess = low.0 + (high.0 - low.0) * S::from_f64(rise(low.1, high.1));
                     first = Some(Candidate { target: Target::Event(k), bracket, guess });
                 }
