@@ -11,7 +11,7 @@ use freeplay::case::{Case, Changes};
 use freeplay::certify::{self, Companion, Horizon, Reach, Until, Witness};
 use freeplay::digits::Sizes;
 use freeplay::post::case_of;
-use freeplay::record::ResultFile;
+use freeplay::record::{Dimension, ResultFile};
 use freeplay::run::{Progress, Watcher};
 use freeplay::simulate::Simulation;
 use serde_json::Value;
@@ -132,7 +132,7 @@ fn a_run_says_until_when_it_means_something_and_writes_it() {
     assert!((0.016..0.020).contains(&horizon.doubles.unwrap()), "{horizon:?}");
     let samples = file.times().unwrap().len();
     for name in ["error_growth", "digits_left", "estimated_digits", "estimated_digits_forces"] {
-        let values = file.over_time(name).unwrap().unwrap();
+        let values = file.along(Dimension::Time, name).unwrap().unwrap();
         assert_eq!(values.len(), samples);
         let digits = name != "error_growth";
         assert!(!digits || values.iter().all(|digits| (0.0..=16.0).contains(digits)), "{name}");

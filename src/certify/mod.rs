@@ -5,6 +5,7 @@
 //! reference and what the reference is wrong by. The time of an event that grazes may be known to
 //! fewer digits than the state around it, and has a bound of its own.
 
+mod companion;
 mod cross;
 mod growth;
 mod horizon;
@@ -14,10 +15,9 @@ mod report;
 mod stored;
 mod tangent;
 
+pub use companion::{Companion, Errand, Reach, Until, Walk, Witness, companion, times_to_follow};
 pub use cross::{CrossCheck, Disagreement, check_run, cross_check};
-pub use horizon::{
-    Companion, Digits, Horizon, LEAST_DIGITS, ONE_DRAW, Reach, Until, Witness, companion, ms,
-};
+pub use horizon::{Digits, Horizon, LEAST_DIGITS, ONE_DRAW, ms};
 pub use reference::{Error, Growth, Stage, Stopped, Watch};
 pub use report::Told;
 pub use stored::NotAReference;

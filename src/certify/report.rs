@@ -122,7 +122,11 @@ impl Certificate {
             Some(known) => format!("; their true times are known to {known:.1e} s"),
             None => String::new(),
         };
-        writeln!(f, "  events       the run has {found} of {of}{off}{}{known}", self.while_doubles())?;
+        writeln!(
+            f,
+            "  events       the run has {found} of {of}{off}{}{known}",
+            self.while_doubles()
+        )?;
         let peaks = &self.peaks;
         let off = match peaks.found {
             0 => String::new(),

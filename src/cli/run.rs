@@ -4,8 +4,8 @@ use super::signals::Signals;
 use super::{CaseArguments, Failure, chain};
 use crate::case::{Case, Changes, Precision};
 use crate::certify::{
-    self, Companion, CrossCheck, Disagreement, Horizon, LEAST_DIGITS, ONE_DRAW, Reach, Until,
-    Witness, ms,
+    self, Companion, CrossCheck, Disagreement, Errand, Horizon, LEAST_DIGITS, ONE_DRAW, Reach,
+    Until, Walk, Witness, ms,
 };
 use crate::digits::Sizes;
 use crate::mechanism::Observation;
@@ -19,7 +19,9 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde_json::{Value, json};
 use std::fmt::Write as _;
 use std::ops::ControlFlow;
+use std::panic::resume_unwind;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::{Duration, Instant, SystemTime};
 
 /// Ticks of the progress bar over a whole run.
@@ -242,6 +244,30 @@ impl<'a> Carried<'a> {
             _ => Carried::No,
         }
     }
+
+    fn case(self) -> Option<&'a Case> {
+        match self {
+            Carried::No => None,
+            Carried::ToTheHorizon(case) | Carried::ToTheEnd(case) => Some(case),
+        }
+    }
+
+    /// How far the companion of a run of so many steps goes.
+    fn reach(self, run_steps: u64) -> Reach {
+        Reach { to_the_end: matches!(self, Carried::ToTheEnd(_)), run_steps }
+    }
+
+    /// What a companion is sent for while its run goes on. Not beside one that may stop at a
+    /// checkpoint, nor where only the run finds its times: those are followed when they are done.
+    fn beside<'b>(
+        self,
+        schedule: &Schedule,
+        most_steps: &'b AtomicU64,
+    ) -> Option<(&'a Case, Errand<'b>)> {
+        let case = self.case().filter(|case| case.plan.checkpoint_interval.is_none())?;
+        let times = certify::times_to_follow(schedule)?;
+        Some((case, Errand { times, to_the_end: self.reach(0).to_the_end, most_steps }))
+    }
 }
 
 /// What a finished run tells.
@@ -347,12 +373,32 @@ fn simulate_into(
     let bar = progress_bar(quiet);
     let begun = Instant::now();
     let mut last = Progress::default();
-    let mut watch = |progress: &Progress| {
-        last = *progress;
-        tell(&bar, progress, duration, begun);
-        signals.flow()
-    };
-    let (statistics, ran) = simulation.run(&mut witnessed, &mut watch);
+    let most_steps = AtomicU64::new(u64::MAX);
+    let abandoned = AtomicBool::new(false);
+    let errand = tangent.beside(&schedule, &most_steps);
+    let sizes = Sizes::of(simulation.mechanism());
+    let (statistics, ran, walk) = std::thread::scope(|scope| {
+        let beside = errand.map(|(case, errand)| {
+            let mut flow = |_: &Progress| match abandoned.load(Ordering::Relaxed) {
+                true => ControlFlow::Break(()),
+                false => signals.flow(),
+            };
+            let (schedule, sizes) = (&schedule, &sizes);
+            scope.spawn(move || errand.walk(case, schedule, sizes, &mut flow))
+        });
+        let mut watch = |progress: &Progress| {
+            last = *progress;
+            tell(&bar, progress, duration, begun);
+            signals.flow()
+        };
+        let (statistics, ran) = simulation.run(&mut witnessed, &mut watch);
+        match ran {
+            Ok(()) => most_steps.store(tangent.reach(last.steps).most_steps(), Ordering::Relaxed),
+            Err(_) => abandoned.store(true, Ordering::Relaxed),
+        }
+        let walk = beside.map(|walk| walk.join().unwrap_or_else(|panic| resume_unwind(panic)));
+        (statistics, ran, walk)
+    });
     let Witnessed { writer, memory: Memory { witness, own }, .. } = witnessed;
     if let Err(simulate::Error::Stopped { time }) = ran {
         bar.finish_and_clear();
@@ -360,7 +406,7 @@ fn simulate_into(
     }
     let followed = ran.and_then(|()| {
         let companion = match witness {
-            Some(witness) => follow(tangent, &schedule, &witness, last.steps, signals),
+            Some(witness) => follow(tangent, &schedule, &witness, walk, last.steps, signals),
             None => None,
         };
         let check = match checked.zip(own).filter(|_| signals.exit_code().is_none()) {
@@ -435,22 +481,20 @@ fn stopped(writer: &Segmented, time: f64) -> Failure {
 #[error("interrupted while the errors of the run were followed")]
 struct NotFollowed;
 
-/// Follows the errors of a run that is done.
+/// Holds what a companion has seen against the run that is done, or sends one after it.
 fn follow(
     tangent: Carried<'_>,
     schedule: &Schedule,
     witness: &Witness,
+    walk: Option<Walk>,
     run_steps: u64,
     signals: &Signals,
 ) -> Option<Companion> {
-    let (case, to_the_end) = match tangent {
-        Carried::No => return None,
-        Carried::ToTheHorizon(case) => (case, false),
-        Carried::ToTheEnd(case) => (case, true),
-    };
-    let mut flow = |_: &Progress| signals.flow();
-    let reach = Reach { to_the_end, run_steps };
-    Some(certify::companion(case, schedule, witness, reach, &mut flow))
+    let (case, reach) = (tangent.case()?, tangent.reach(run_steps));
+    Some(match walk {
+        Some(walk) => walk.beside(case, witness, reach),
+        None => certify::companion(case, schedule, witness, reach, &mut |_| signals.flow()),
+    })
 }
 
 /// What is remembered of a run until it is done.
