@@ -245,7 +245,7 @@ fn a_companion_that_is_interrupted_tells_what_it_knows() {
     let mut looks = 0;
     let companion = followed_while(&case, None, reach, &mut |_| {
         looks += 1;
-        if looks > 4 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        if looks > 2 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     });
     assert_eq!(companion.stopped.as_deref(), Some("it was interrupted"));
     let horizon = companion.horizon();
