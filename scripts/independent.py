@@ -26,15 +26,6 @@ FLIGHT, CONTACT = 0, 1
 TURN = 0.05  # rad that a body may turn in a step
 
 
-def rotated(angle, s):
-    c, d = math.cos(angle), math.sin(angle)
-    return np.array([c * s[0] - d * s[1], d * s[0] + c * s[1]])
-
-
-def across(s):
-    return np.array([-s[1], s[0]])
-
-
 def set_key(case, change):
     key, value = change.split("=", 1)
     try:
@@ -121,43 +112,45 @@ class Mechanism:
     def end(self, case, place):
         body, point = place.split(".")
         if body == "ground":
-            return None, np.array(case["ground"]["points"][point])
-        return self.names.index(body), np.array(case["bodies"][body]["points"][point])
+            return None, complex(*case["ground"]["points"][point])
+        return self.names.index(body), complex(*case["bodies"][body]["points"][point])
 
     def point(self, q, v, end):
-        """Arm, place and velocity of a joint's end, and the body's rate."""
+        """Arm, place and velocity of a joint's end, as complex numbers, and the body's rate."""
         body, s = end
         if body is None:
-            return s, s, np.zeros(2), 0.0
-        arm = rotated(q[3 * body + 2], s)
-        rate = v[3 * body + 2]
-        at = slice(3 * body, 3 * body + 2)
-        return arm, q[at] + arm, v[at] + rate * across(arm), rate
+            return s, s, 0.0, 0.0
+        x, y, angle = q[3 * body : 3 * body + 3]
+        vx, vy, rate = v[3 * body : 3 * body + 3]
+        arm = complex(math.cos(angle), math.sin(angle)) * s
+        return arm, complex(x, y) + arm, complex(vx, vy) + 1j * rate * arm, rate
 
     def gap(self, clearance, q, v):
-        """(depth, rate, slip, n, t, arms) of a clearance."""
+        """(depth, rate, slip, n, arms) of a clearance, of lists of coordinates and rates."""
         arm_i, at_i, v_i, w_i = self.point(q, v, clearance.ends[0])
         arm_j, at_j, v_j, w_j = self.point(q, v, clearance.ends[1])
-        offset, rate = at_j - at_i, v_j - v_i
-        e = math.hypot(*offset)
-        n = offset / e if e > 0.0 else np.array([1.0, 0.0])
-        t = across(n)
-        slip = t @ rate + clearance.journal * w_j - clearance.bearing * w_i
-        return e - clearance.c, n @ rate, slip, n, t, (arm_i, arm_j)
+        offset = at_j - at_i
+        e = abs(offset)
+        n = offset / e if e > 0.0 else 1.0 + 0.0j
+        # along n and across it
+        along = (v_j - v_i) * n.conjugate()
+        slip = along.imag + clearance.journal * w_j - clearance.bearing * w_i
+        return e - clearance.c, along.real, slip, n, (arm_i, arm_j)
 
     def loads(self, q, v):
         force = self.weight.copy()
         for clearance in self.clearances:
             if clearance.mode == FLIGHT:
                 continue
-            depth, rate, slip, n, t, arms = self.gap(clearance, q, v)
+            depth, rate, slip, n, arms = self.gap(clearance, q, v)
             normal, tangential = clearance.force(depth, rate, slip)
-            on_journal = -normal * n + tangential * t
+            on_journal = (-normal + 1j * tangential) * n
             sides = zip(clearance.ends, arms, (-1.0, 1.0), (clearance.bearing, clearance.journal))
             for (body, _), arm, sign, radius in sides:
                 if body is not None:
-                    force[3 * body : 3 * body + 2] += sign * on_journal
-                    moment = arm[0] * on_journal[1] - arm[1] * on_journal[0]
+                    moment = (arm.conjugate() * on_journal).imag
+                    force[3 * body] += sign * on_journal.real
+                    force[3 * body + 1] += sign * on_journal.imag
                     force[3 * body + 2] += sign * (moment + radius * tangential)
         return force
 
@@ -170,11 +163,12 @@ class Mechanism:
                 body = end[0]
                 if body is None:
                     continue
-                at = slice(2 * row, 2 * row + 2)
                 matrix[2 * row, 3 * body] += sign
                 matrix[2 * row + 1, 3 * body + 1] += sign
-                matrix[at, 3 * body + 2] += sign * across(arm)
-                right[at] += sign * rate * rate * arm
+                matrix[2 * row, 3 * body + 2] -= sign * arm.imag
+                matrix[2 * row + 1, 3 * body + 2] += sign * arm.real
+                right[2 * row] += sign * rate * rate * arm.real
+                right[2 * row + 1] += sign * rate * rate * arm.imag
         for row, (i, j, _, _) in enumerate(self.drives, 2 * len(self.joints)):
             for body, sign in ((i, -1.0), (j, 1.0)):
                 if body is not None:
@@ -182,6 +176,7 @@ class Mechanism:
         return matrix, right
 
     def accelerations(self, q, v):
+        q, v = q.tolist(), v.tolist()
         force = self.loads(q, v)
         if not self.rows:
             return force / self.mass
@@ -196,10 +191,10 @@ class Mechanism:
 
     def placement(self, t, q):
         """How far the constraints are off, in place."""
-        off = []
+        off, v = [], [0.0] * self.size
         for ends in self.joints:
-            v = np.zeros(self.size)
-            off += list(self.point(q, v, ends[1])[1] - self.point(q, v, ends[0])[1])
+            apart = self.point(q, v, ends[1])[1] - self.point(q, v, ends[0])[1]
+            off += [apart.real, apart.imag]
         for i, j, angle, rate in self.drives:
             turned = (q[3 * j + 2] if j is not None else 0.0) - (q[3 * i + 2] if i is not None else 0.0)
             off.append(turned - angle - rate * t)
@@ -232,7 +227,7 @@ class Mechanism:
 
     def watched(self, y):
         """Functions that are above zero while the modes hold, by (clearance, what)."""
-        q, v = y[: self.size], y[self.size :]
+        q, v = y[: self.size].tolist(), y[self.size :].tolist()
         values = {}
         for k, clearance in enumerate(self.clearances):
             depth, rate, slip, *_ = self.gap(clearance, q, v)
@@ -476,7 +471,8 @@ def scaled(mechanism, y, scale):
     parts += [v[c::3] / scale["scale_velocity"] for c in range(2)]
     for clearance in mechanism.clearances:
         ends = [mechanism.point(q, v, end)[1] for end in clearance.ends]
-        parts.append((ends[1] - ends[0]) / clearance.c)
+        offset = (ends[1] - ends[0]) / clearance.c
+        parts.append(np.array([offset.real, offset.imag]))
     return np.concatenate(parts)
 
 
@@ -551,16 +547,16 @@ def main():
     start = arguments.start or arguments.against
     y = stored_start(start, mechanism) if start else centred_start(case, mechanism)
     until = arguments.until or case["run"]["duration"]
+    if arguments.against:
+        over, where, judged = judge(arguments.against, case, arguments.tolerance)
+        print(f"claims exceed the truth by {over:.1f} digits (at {where} s); {judged:.1f} were judged")
+        return 1 if over else 0
     times = list(np.arange(0.0, until, arguments.every)) if arguments.every else []
     integration, states = follow(case, y, until, arguments.tolerance, times)
     for k, begin, end, rate in integration.contacts:
         print(f"{mechanism.clearances[k].name} {begin:.12e} {end:.12e} {rate:.9e}")
     for time, state in zip(times, states):
         print(f"{time:.6e}", *(f"{x:.12e}" for x in state))
-    if arguments.against:
-        over, where, judged = judge(arguments.against, case, arguments.tolerance)
-        print(f"claims exceed the truth by {over:.1f} digits (at {where} s); {judged:.1f} were judged")
-        return 1 if over else 0
     return 0
 
 
