@@ -16,6 +16,7 @@
 //! kink at each edge: an integration of high order must restart there, and therefore the law is
 //! evaluated by region, each of which goes on smoothly beyond its edges.
 
+use super::pieces::Pieces;
 use super::{Branch, COEFFICIENT, Ends, FrictionLaw, Sloped};
 use crate::parameter::{Key, Kind, Otherwise, Range, Takes, Values};
 use crate::scalar::Scalar;
@@ -81,6 +82,7 @@ impl From<Branch> for SlipRegion {
     }
 }
 
+#[cfg(test)]
 impl From<SlipRegion> for Branch {
     fn from(region: SlipRegion) -> Self {
         Branch(region as u8)
@@ -94,7 +96,7 @@ pub struct Ambrosio<S> {
     v0: S,
     v1: S,
     inverse_width: S,
-    hysteresis: S,
+    pieces: Pieces<S, 4>,
 }
 
 /// The numbers of the law, whatever the arithmetic of the run.
@@ -138,15 +140,11 @@ impl<S: Scalar> Ambrosio<S> {
         Ambrosio::with(number("coefficient"), number("v0"), number("v1"), hysteresis)
     }
 
-    /// Friction with coefficient c_f and ramp from v0 to v1 (m/s), 0 ≤ v0 < v1.
-    ///
-    /// A slip that decays onto an edge of the ramp from above must not cross it again and again
-    /// on rounding errors: on the way down an edge lies lower by `hysteresis` · v1. Region
-    /// and neighbour differ there by the order of `hysteresis`, for a time of the same order, so
-    /// the trajectory is changed by its square.
+    /// Friction with coefficient c_f and ramp from v0 to v1 (m/s), 0 ≤ v0 < v1; edges are left
+    /// `hysteresis` · v1 beyond themselves.
     fn with(coefficient: S, v0: S, v1: S, hysteresis: f64) -> Self {
-        let hysteresis = S::from_f64(hysteresis) * v1;
-        Ambrosio { coefficient, v0, v1, inverse_width: S::one() / (v1 - v0), hysteresis }
+        let pieces = Pieces::new([-v1, -v0, v0, v1], S::from_f64(hysteresis) * v1);
+        Ambrosio { coefficient, v0, v1, inverse_width: S::one() / (v1 - v0), pieces }
     }
 
     /// Tangential force per normal force, F_T/F_N, and its derivative by the slip (s/m).
@@ -161,66 +159,6 @@ impl<S: Scalar> Ambrosio<S> {
             Forward => (-self.coefficient, S::zero()),
         }
     }
-
-    /// The region of a slip (m/s) about whose past nothing is known. Neighbours overlap by the
-    /// hysteresis; there it is the one that the slip's acceleration (m/s²) leads into, for an
-    /// event function that is zero at a restart never passes zero.
-    fn region(&self, slip: S, acceleration: S) -> SlipRegion {
-        let holds = |region: &SlipRegion| {
-            let (lower, upper) = self.edges_of(*region);
-            lower <= slip && slip <= upper && !self.is_empty(*region)
-        };
-        let (first, last) = (
-            ORDER.into_iter().find(holds).unwrap_or(RampForward),
-            ORDER.into_iter().rfind(holds).unwrap_or(RampForward),
-        );
-        // without an acceleration, the one on this side of zero
-        let upward = match acceleration == S::zero() {
-            true => slip < S::zero(),
-            false => acceleration > S::zero(),
-        };
-        if upward { last } else { first }
-    }
-
-    /// Whether a region holds no more than one slip.
-    fn is_empty(&self, region: SlipRegion) -> bool {
-        region == Still && self.v0 == S::zero()
-    }
-
-    /// The slips (m/s) at which a region is left, below and above; infinite where it has no edge.
-    fn edges_of(&self, region: SlipRegion) -> (S, S) {
-        let far = S::from_f64(f64::INFINITY);
-        let h = self.hysteresis;
-        match region {
-            Backward => (-far, -self.v1 + h),
-            RampBackward => (-self.v1, -self.v0 + h),
-            Still => (-self.v0, self.v0),
-            RampForward => (self.v0 - h, self.v1),
-            Forward => (self.v1 - h, far),
-        }
-    }
-
-    /// The region after `region` was left at `slip` (m/s) through its upper or its lower edge, or
-    /// one further that way. Never back: an edge that was met counts as passed, on whichever side
-    /// of it the errors of the slip have left it.
-    fn region_beyond(&self, region: SlipRegion, upward: bool, slip: S) -> SlipRegion {
-        let mut index = ORDER.iter().position(|r| *r == region).unwrap_or(2);
-        if upward {
-            index = (index + 1).min(ORDER.len() - 1);
-            while index + 1 < ORDER.len()
-                && (self.is_empty(ORDER[index]) || slip > self.edges_of(ORDER[index]).1)
-            {
-                index += 1;
-            }
-        } else {
-            index = index.saturating_sub(1);
-            while index > 0 && (self.is_empty(ORDER[index]) || slip < self.edges_of(ORDER[index]).0)
-            {
-                index -= 1;
-            }
-        }
-        ORDER[index]
-    }
 }
 
 impl<S: Scalar> FrictionLaw<S> for Ambrosio<S> {
@@ -231,15 +169,15 @@ impl<S: Scalar> FrictionLaw<S> for Ambrosio<S> {
     }
 
     fn branch(&self, slip: S, acceleration: S) -> Branch {
-        self.region(slip, acceleration).into()
+        self.pieces.branch(slip, acceleration)
     }
 
     fn edges(&self, branch: Branch) -> (S, S) {
-        self.edges_of(branch.into())
+        self.pieces.edges(branch)
     }
 
     fn beyond(&self, branch: Branch, upward: bool, slip: S) -> Branch {
-        self.region_beyond(branch.into(), upward, slip).into()
+        self.pieces.beyond(branch, upward, slip)
     }
 
     /// Upper end v1 of the ramp.
@@ -264,6 +202,20 @@ mod tests {
 
     fn law() -> Ambrosio<f64> {
         Ambrosio::with(0.1, 1e-3, 1e-2, 1e-6)
+    }
+
+    impl Ambrosio<f64> {
+        fn region(&self, slip: f64, acceleration: f64) -> SlipRegion {
+            self.branch(slip, acceleration).into()
+        }
+
+        fn edges_of(&self, region: SlipRegion) -> (f64, f64) {
+            self.edges(region.into())
+        }
+
+        fn region_beyond(&self, region: SlipRegion, upward: bool, slip: f64) -> SlipRegion {
+            self.beyond(region.into(), upward, slip).into()
+        }
     }
 
     proptest! {

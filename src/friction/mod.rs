@@ -11,6 +11,8 @@ use crate::parameter::{Key, Otherwise, Range, Takes, Values, kinds};
 use crate::scalar::Scalar;
 use serde::{Deserialize, Serialize};
 
+mod pieces;
+
 pub use ambrosio::Ramp;
 
 kinds! { $
@@ -21,6 +23,9 @@ kinds! { $
     LuGre in lugre,
     Tanh in tanh,
     BrownMcPhee in brown_mcphee,
+    Threlfall in threlfall,
+    BengisuAkay in bengisu_akay,
+    Stribeck in stribeck,
     #[cfg(test)]
     Scratch in scratch,
 }

@@ -1,0 +1,123 @@
+//! Every law of the menu in the paper's case c, on both engines. Known in advance: the formulas of
+//! the friction laws that go by the slip alone, written here once more; that the energy balance closes;
+//! that two engines which share no step agree while errors are small.
+
+mod simulated;
+
+use freeplay::contact::Damping;
+use freeplay::friction;
+use freeplay::mechanism::Observation;
+use simulated::{Kept, case, simulate};
+
+const ENGINES: [&str; 2] = ["ida", "explicit"];
+
+/// The table of each friction law's own example.
+fn frictions() -> Vec<(&'static str, &'static str)> {
+    let table = |kind: &freeplay::parameter::Kind| {
+        let (_, table) = kind.example.split_once("friction = ").expect("an example of friction");
+        (kind.word, table.trim())
+    };
+    friction::KINDS.iter().map(|kind| table(kind)).collect()
+}
+
+/// F_T/F_N by the formula, at a slip (m/s), of the laws that remember nothing; with the numbers of
+/// their examples.
+fn ratio(law: &str, slip: f64) -> Option<f64> {
+    let (v, sign) = (slip.abs(), if slip == 0.0 { 0.0 } else { slip.signum() });
+    let share = match law {
+        "ambrosio" => 0.1 * ((v - 1e-3) / (1e-2 - 1e-3)).clamp(0.0, 1.0),
+        "tanh" => 0.1 * (v / 1e-3).tanh(),
+        "threlfall" if v <= 1e-3 => 0.1 * (1.0 - (-3.0 * v / 1e-3).exp()),
+        "threlfall" => 0.095,
+        "brown-mcphee" => {
+            let x = v / 1e-3;
+            0.1 * (4.0 * x).tanh() + 0.05 * x / (0.25 * x * x + 0.75).powi(2)
+        }
+        "bengisu-akay" if v <= 1e-3 => 0.15 * (1.0 - ((v - 1e-3) / 1e-3).powi(2)),
+        "bengisu-akay" => 0.1 + 0.05 * (-50.0 * (v - 1e-3)).exp(),
+        "stribeck" => (0.1 + 0.05 * (-(v / 1e-2).powi(2)).exp()) * (v / 1e-3).tanh(),
+        _ => return None,
+    };
+    Some(-share * sign)
+}
+
+/// Case c with a friction law and a damping law in both its joints, for some ms.
+fn run(engine: &str, friction: &str, damping: &str, duration: &str) -> Kept {
+    let restitution = if damping == "hertz" { "" } else { "restitution = 0.5, " };
+    let normal = format!(
+        "{{ law = \"{damping}\", {restitution}stiffness = \"hertz-printed\", young = 207e9, poisson = 0.3 }}"
+    );
+    let mut set = vec![format!("solver.engine={engine}"), format!("run.duration={duration}")];
+    set.push("run.sample_interval=1e-5".to_owned());
+    for joint in ["A", "B", "B0"] {
+        set.push(format!("joints.{joint}.clearance.friction={friction}"));
+        set.push(format!("joints.{joint}.clearance.normal={normal}"));
+    }
+    let set: Vec<&str> = set.iter().map(String::as_str).collect();
+    simulate(&case("cases/four-bar-c.toml", &set))
+}
+
+fn assert_balanced(kept: &Kept, what: &str) {
+    let scale = kept.largest(|sample| sample.energy.kinetic);
+    let off = kept.largest(|sample| sample.energy.residual) / scale;
+    assert!(off < 1e-6, "{what}: energy is off by {off:e}");
+    assert!(kept.contacts.len() > 10, "{what}: {} contacts", kept.contacts.len());
+}
+
+fn assert_rubs_by_formula(kept: &Kept, law: &str) {
+    let largest = kept.largest(|sample| sample.clearances[0].normal_force);
+    let mut rubbed = 0;
+    for sample in &kept.samples {
+        for clearance in sample.clearances.iter().filter(|clearance| clearance.in_contact) {
+            let Some(ratio) = ratio(law, clearance.slip_velocity) else { return };
+            // a contact that pulls does not rub
+            let expected = ratio * clearance.normal_force.max(0.0);
+            let off = (clearance.tangential_force - expected).abs();
+            // branches overlap by a little beyond their edges
+            assert!(off <= 1e-6 * largest, "{law}: {clearance:?} is off by {off:e} N");
+            rubbed += usize::from(clearance.tangential_force != 0.0);
+        }
+    }
+    assert!(rubbed > 50, "{law}: {rubbed} samples with friction");
+}
+
+/// Each friction law with two damping laws, each damping law with one friction law at least.
+fn every_law_on(engine: &str) {
+    let frictions = frictions();
+    assert!(frictions.len() >= 8 && Damping::ALL.len() >= 11);
+    for (k, (damping, _)) in Damping::ALL.iter().enumerate() {
+        for other in [0, 4] {
+            let (word, table) = frictions[(k + other) % frictions.len()];
+            let kept = run(engine, table, damping, "0.012");
+            let what = format!("{word} with {damping} on {engine}");
+            assert_balanced(&kept, &what);
+            assert_rubs_by_formula(&kept, word);
+        }
+    }
+}
+
+#[test]
+fn every_law_runs_case_c_on_ida() {
+    every_law_on("ida");
+}
+
+#[test]
+fn every_law_runs_case_c_on_the_explicit_engine() {
+    every_law_on("explicit");
+}
+
+#[test]
+fn both_engines_have_the_same_friction() {
+    for (word, table) in frictions() {
+        let [a, b] = ENGINES.map(|engine| run(engine, table, "lankarani-nikravesh", "0.002"));
+        let turned = |sample: &Observation| -> Vec<f64> {
+            sample.bodies.iter().map(|body| body.angular_velocity).collect()
+        };
+        let (a, b) = (turned(a.last()), turned(b.last()));
+        let fastest = a.iter().fold(0.0, |most: f64, rate| most.max(rate.abs()));
+        for (one, other) in a.iter().zip(&b) {
+            let off = (one - other).abs() / fastest;
+            assert!(off < 1e-6, "{word}: rates differ by {off:e} of the fastest");
+        }
+    }
+}
