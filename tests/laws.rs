@@ -81,13 +81,12 @@ fn assert_rubs_by_formula(kept: &Kept, law: &str) {
     assert!(rubbed > 50, "{law}: {rubbed} samples with friction");
 }
 
-/// Each friction law with two damping laws, each damping law with one friction law at least.
+/// Every friction law with every damping law.
 fn every_law_on(engine: &str) {
     let frictions = frictions();
     assert!(frictions.len() >= 8 && Damping::ALL.len() >= 11);
-    for (k, (damping, _)) in Damping::ALL.iter().enumerate() {
-        for other in [0, 4] {
-            let (word, table) = frictions[(k + other) % frictions.len()];
+    for (damping, _) in Damping::ALL {
+        for (word, table) in &frictions {
             let kept = run(engine, table, damping, "0.012");
             let what = format!("{word} with {damping} on {engine}");
             assert_balanced(&kept, &what);
