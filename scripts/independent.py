@@ -303,11 +303,14 @@ class Integration:
         of_q = np.tile([0.01 * least, 0.01 * least, 0.1], n // 3)
         return self.tolerance * np.concatenate([of_q, np.full(n, 0.01 * fastest)])
 
-    def carry(self, until, seen):
-        """Goes to `until`; `seen(t, y)` is told of the states at the times it asks for in turn."""
-        guess = 1e-9
+    def carry(self, until, seen, stops=()):
+        """Goes to `until`; `seen(t, y)` is told of the states as it goes on. Steps end at each of
+        some times: between its ends a step is known to fewer digits."""
+        guess, stops = 1e-9, [*stops]
         while self.t < until:
-            limit = min(until, self.t + self.longest())
+            while stops and stops[0] <= self.t:
+                stops.pop(0)
+            limit = min(until, self.t + self.longest(), *stops[:1])
             solver = self.stepper(limit, min(guess, limit - self.t))
             before = (self.t, self.y, self.mechanism.watched(self.y))
             message = solver.step()
@@ -459,7 +462,7 @@ def follow(case, y, until, tolerance, times, share=1.0):
             at = times[len(states)]
             states.append(integration.y.copy() if at == 0.0 else dense(at))
 
-    integration.carry(until, seen)
+    integration.carry(until, seen, times)
     return integration, states
 
 

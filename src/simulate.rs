@@ -468,6 +468,10 @@ fn attributes(case: &Case, mechanism: &Mechanism<f64>) -> Vec<(String, Attribute
             format!("ruling_maximum_penetration_{name}"),
             Attribute::from(clearance.maximum_penetration),
         ));
+        let described = case.description.clearance(name);
+        let nominal = described.and_then(|clearance| clearance.normal.nominal_restitution());
+        attributes
+            .extend(nominal.map(|e| (format!("nominal_restitution_{name}"), Attribute::from(e))));
     }
     attributes
 }

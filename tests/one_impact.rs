@@ -41,6 +41,10 @@ fn to_and_fro(law: &Law, exponent: f64, speed: f64) -> Kept {
         "hertz" => String::new(),
         _ => format!("restitution = {restitution:?}, "),
     };
+    to_and_fro_with(name, &restitution, exponent, speed)
+}
+
+fn to_and_fro_with(name: &str, restitution: &str, exponent: f64, speed: f64) -> Kept {
     let duration = 0.025 / speed;
     let text = format!(
         r#"
@@ -132,6 +136,19 @@ fn each_rebound_has_the_ratio_of_its_law_whatever_the_speed_and_the_exponent() {
             for pair in rates.windows(2) {
                 assert_near(&format!("{name}, rebound"), pair[1] / pair[0], exact);
             }
+        }
+    }
+}
+
+#[test]
+fn an_impact_rebounds_at_what_was_asked_for() {
+    for (name, achieved) in [("lankarani-nikravesh", 0.9), ("flores", 0.4), ("lee-wang", 0.75)] {
+        let asked = format!("achieved_restitution = {achieved:?}, ");
+        let kept = to_and_fro_with(name, &asked, 1.5, 1.0);
+        let rates: Vec<f64> = kept.contacts.iter().map(|contact| contact.impact_rate).collect();
+        assert!(rates.len() >= 4, "{name}: {} impacts", rates.len());
+        for pair in rates.windows(2) {
+            assert_near(&format!("{name}, asked for"), pair[1] / pair[0], achieved);
         }
     }
 }

@@ -83,6 +83,7 @@ fn normal(keys: &mut TableReader) -> NormalDescription {
     NormalDescription {
         law: law.unwrap_or(Damping::Hertz),
         restitution: keys.optional("restitution", ""),
+        achieved_restitution: keys.optional("achieved_restitution", ""),
         stiffness: stiffness.unwrap_or(StiffnessDescription::HertzPrinted),
         young: keys.optional("young", "Pa"),
         poisson: keys.optional("poisson", ""),

@@ -79,7 +79,7 @@ impl Case {
         }
         let stem = path.file_stem().map_or(String::new(), |stem| stem.to_string_lossy().into());
         let mut findings = Findings::default();
-        let (name, title, description, plan) =
+        let (name, title, description, mut plan) =
             TableReader::root(document.as_table(), &mut findings, |root| {
                 let name = root.optional("name", "").unwrap_or(stem);
                 let title = root.optional("title", "").unwrap_or_default();
@@ -87,6 +87,7 @@ impl Case {
             });
         findings.add_checks(check_name(&name));
         findings.add_checks(check(&description));
+        findings.add_checks(plan.settle(&description).into_iter().collect());
         findings.add_checks(plan.check());
         let (complaints, defaults) = findings.into_parts();
         if !complaints.is_empty() {

@@ -1,8 +1,9 @@
 //! How long a case runs, what it samples, and how it is solved.
 
 use super::table_reader::TableReader;
-use crate::model::{Complaint, Complaints, KeyPath};
-use crate::scalar::Decimal;
+use crate::course::Course;
+use crate::model::{Complaint, Complaints, Description, KeyPath};
+use crate::scalar::{Decimal, F256, Scalar};
 
 /// Rows of samples that a run may write at most.
 const MOST_SAMPLES: f64 = 1e8;
@@ -25,6 +26,8 @@ const LARGEST_EXPLICIT_TOLERANCE: f64 = 1e-2;
 pub struct Plan {
     /// Simulated time (s).
     pub duration: Decimal,
+    /// Revolutions of the first drive that it is given by, where it is.
+    revolutions: Option<Decimal>,
     /// Time between samples (s).
     pub sample_interval: Decimal,
     /// Where samples are taken.
@@ -123,17 +126,24 @@ impl NormName {
 impl Plan {
     /// Reads the keys `run` and `solver` of a case's root.
     pub(super) fn read(root: &mut TableReader) -> Plan {
-        let (duration, sample_interval, sampling, checkpoint_interval) =
+        let (revolutions, duration, sample_interval, sampling, checkpoint_interval) =
             root.table("run", |keys| {
+                let revolutions: Option<Decimal> = keys.optional("revolutions", "");
+                let duration = match revolutions {
+                    Some(_) => keys.optional("duration", "s"),
+                    None => Some(keys.required("duration", "s")),
+                };
                 (
-                    keys.required("duration", "s"),
+                    revolutions,
+                    duration,
                     keys.required("sample_interval", "s"),
                     keys.choice("sampling", &Sampling::ALL, Some("uniform")),
                     keys.optional("checkpoint_interval", "s"),
                 )
             });
         Plan {
-            duration,
+            duration: duration.unwrap_or_else(|| Decimal::from(f64::NAN)),
+            revolutions,
             sample_interval,
             sampling: sampling.unwrap_or(Sampling::Uniform),
             checkpoint_interval,
@@ -141,11 +151,42 @@ impl Plan {
         }
     }
 
+    /// Finds the duration where it is given in revolutions, rounded to a double. Tells what is in the
+    /// way.
+    pub(super) fn settle(&mut self, description: &Description) -> Option<Complaint> {
+        let revolutions = self.revolutions.as_ref()?;
+        let key = KeyPath::new(["run", "revolutions"]);
+        let mut complaints = Complaints::default();
+        if !complaints.require_positive(key.clone(), revolutions, "") {
+            return complaints.into_vec().pop();
+        }
+        let complain =
+            |message: &str| Some(Complaint { key: key.clone(), message: message.into() });
+        if !self.duration.to_f64().is_nan() {
+            return complain("the duration is given too: one of the two says how long the run is");
+        }
+        let period = description.drives.first().and_then(|drive| {
+            let rpm = drive.part.is("speed").then(|| drive.part.decimal("speed_rpm"))?;
+            match rpm {
+                Some(rpm) => Some(F256::from(60) / rpm.value::<F256>().abs()),
+                None => Course::<F256>::of(&drive.part)?.period().map(F256::from_f64),
+            }
+        });
+        let Some(period) = period.filter(|period| period.to_f64().is_finite()) else {
+            return complain("needs a first drive that turns at a constant speed");
+        };
+        self.duration = Decimal::from((revolutions.value::<F256>() * period).to_f64());
+        None
+    }
+
     /// What is wrong with the numbers of the plan.
     pub(super) fn check(&self) -> Vec<Complaint> {
         let mut complaints = Complaints::default();
-        self.check_samples(&mut complaints);
-        self.check_checkpoints(&mut complaints);
+        // revolutions that come to no duration have been complained about
+        if self.revolutions.is_none() || !self.duration.to_f64().is_nan() {
+            self.check_samples(&mut complaints);
+            self.check_checkpoints(&mut complaints);
+        }
         self.solver.check_tolerances(&mut complaints);
         self.solver.check_steps(&mut complaints, self.first_sample());
         complaints.into_vec()

@@ -92,8 +92,9 @@ impl Checked<'_> {
     /// The clearances: what is alike in several is said once, below all that have it.
     fn clearance_lines(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mechanism = self.simulation.mechanism();
-        let told: Vec<String> =
-            (0..mechanism.modes().len()).map(|k| law_lines(mechanism, k)).collect();
+        let told: Vec<String> = (0..mechanism.modes().len())
+            .map(|k| law_lines(&self.case.description, mechanism, k))
+            .collect();
         for (k, law) in told.iter().enumerate() {
             if told[..k].contains(law) {
                 continue;
@@ -213,6 +214,7 @@ impl Checked<'_> {
             "exponent": clearance.normal.exponent(),
             "damping_weight": clearance.normal.damping_weight(),
             "rebound": contact::rebound(clearance.normal.damping_weight()),
+            "nominal_restitution": nominal_restitution(&self.case.description, self.simulation.mechanism(), k),
             "friction": clearance.friction.is_some(),
             "tension": if clearance.cut_tension { "cut" } else { "keep" },
             "minimum_impact_rate": clearance.minimum_impact_rate,
@@ -385,15 +387,30 @@ fn kinds_of<'a>(parts: impl Iterator<Item = (&'a String, &'a Values)>) -> Value 
     Value::Object(kinds.collect())
 }
 
+/// The nominal restitution of a clearance whose achieved one is given.
+fn nominal_restitution(
+    description: &Description,
+    mechanism: &Mechanism<f64>,
+    k: usize,
+) -> Option<f64> {
+    let name = &mechanism.model().names().clearances[k];
+    description.clearance(name)?.normal.nominal_restitution()
+}
+
 /// What a clearance is, without where it is.
-fn law_lines(mechanism: &Mechanism<f64>, k: usize) -> String {
+fn law_lines(description: &Description, mechanism: &Mechanism<f64>, k: usize) -> String {
     let mut lines = String::new();
     // writing to a string cannot fail
-    let _ = write_law(mechanism, k, &mut lines);
+    let _ = write_law(description, mechanism, k, &mut lines);
     lines
 }
 
-fn write_law(mechanism: &Mechanism<f64>, k: usize, f: &mut String) -> fmt::Result {
+fn write_law(
+    description: &Description,
+    mechanism: &Mechanism<f64>,
+    k: usize,
+    f: &mut String,
+) -> fmt::Result {
     let clearance = &mechanism.model().clearances()[k];
     writeln!(
         f,
@@ -411,7 +428,11 @@ fn write_law(mechanism: &Mechanism<f64>, k: usize, f: &mut String) -> fmt::Resul
         tidy(law.damping_weight())
     )?;
     let rebound = contact::rebound(law.damping_weight());
-    writeln!(f, "    one impact by itself rebounds at {rebound:.6} of its speed")?;
+    let asked = match nominal_restitution(description, mechanism, k) {
+        Some(nominal) => format!(", as asked for: a nominal restitution of {nominal:.6}"),
+        None => String::new(),
+    };
+    writeln!(f, "    one impact by itself rebounds at {rebound:.6} of its speed{asked}")?;
     let friction = if clearance.friction.is_some() { "with friction" } else { "no friction" };
     let tension = if clearance.cut_tension { "cut to zero" } else { "kept, as the law is printed" };
     writeln!(f, "    {friction}; tension is {tension}")?;

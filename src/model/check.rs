@@ -282,7 +282,7 @@ fn check_stiffness(complaints: &mut Complaints, key: KeyPath, clearance: &Cleara
 
 fn check_normal(complaints: &mut Complaints, key: &KeyPath, normal: &NormalDescription) {
     complaints.require(key.key("exponent"), &normal.exponent, "", "at least 1", |n| n >= 1.0);
-    check_restitution(complaints, key.key("restitution"), normal);
+    check_restitution(complaints, key, normal);
     if let StiffnessDescription::Number(stiffness) = &normal.stiffness {
         complaints.require_positive(key.key("stiffness"), stiffness, "N/mⁿ");
     }
@@ -304,17 +304,36 @@ fn of_each(constant: &Option<OfMaterials>) -> impl Iterator<Item = &Decimal> {
     })
 }
 
-/// A law that dissipates needs a restitution, one that does not takes none.
-fn check_restitution(complaints: &mut Complaints, key: KeyPath, normal: &NormalDescription) {
+/// A law that dissipates needs a restitution, nominal or achieved, one that does not takes none.
+fn check_restitution(complaints: &mut Complaints, key: &KeyPath, normal: &NormalDescription) {
     let (dissipates, law) = (normal.law.about().restitution, normal.law.about().word);
-    match &normal.restitution {
-        None if dissipates => complaints.add(key, format!("is missing; law {law:?} needs it")),
-        Some(_) if !dissipates => complaints.add(key, format!("law {law:?} takes no restitution")),
-        Some(restitution) => {
-            let range = "greater than 0 and at most 1";
-            complaints.require(key, restitution, "", range, |e| e > 0.0 && e <= 1.0);
+    let (nominal, achieved) = (key.key("restitution"), key.key("achieved_restitution"));
+    let given = [(nominal, &normal.restitution), (achieved, &normal.achieved_restitution)];
+    for (key, restitution) in &given {
+        let Some(restitution) = restitution else { continue };
+        if !dissipates {
+            complaints.add(key.clone(), format!("law {law:?} takes no restitution"));
         }
-        None => {}
+        let range = "greater than 0 and at most 1";
+        complaints.require(key.clone(), restitution, "", range, |e| e > 0.0 && e <= 1.0);
+    }
+    let [(nominal, _), (key, _)] = given;
+    match (&normal.restitution, &normal.achieved_restitution) {
+        (None, None) if dissipates => {
+            let rather = "needs it, or achieved_restitution";
+            complaints.add(nominal, format!("is missing; law {law:?} {rather}"));
+        }
+        (Some(_), Some(_)) => {
+            complaints.add(key, "the restitution is given too: one of the two determines the law");
+        }
+        (None, Some(achieved)) if dissipates => {
+            let (achieved, least) = (achieved.to_f64(), normal.law.least_rebound());
+            if achieved > 0.0 && achieved < least {
+                let at = format!("law {law:?} rebounds at {least:.4} of the speed or more");
+                complaints.add(key, format!("is {achieved}, but {at}; `freeplay laws` has others"));
+            }
+        }
+        _ => {}
     }
 }
 

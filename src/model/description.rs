@@ -101,6 +101,8 @@ pub struct NormalDescription {
     pub law: Damping,
     /// Restitution c_e in (0, 1]; the Hertz law has none.
     pub restitution: Option<Decimal>,
+    /// The restitution that one impact by itself is to have, in place of a nominal one.
+    pub achieved_restitution: Option<Decimal>,
     /// Generalized stiffness.
     pub stiffness: StiffnessDescription,
     /// Young's modulus E (Pa), for the Hertz stiffnesses.
@@ -109,6 +111,20 @@ pub struct NormalDescription {
     pub poisson: Option<OfMaterials>,
     /// Exponent n of the penetration.
     pub exponent: Decimal,
+}
+
+impl Description {
+    /// The clearance of a joint, if it has one.
+    pub fn clearance(&self, joint: &str) -> Option<&ClearanceDescription> {
+        self.joints.iter().find(|known| known.name == joint)?.clearance.as_ref()
+    }
+}
+
+impl NormalDescription {
+    /// The nominal restitution that gives the one to be achieved, where that is asked for.
+    pub fn nominal_restitution(&self) -> Option<f64> {
+        self.law.nominal(self.achieved_restitution.as_ref()?.to_f64())
+    }
 }
 
 /// A constant of the two materials that touch; written as one number where they are the same.

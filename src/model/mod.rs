@@ -14,7 +14,7 @@ pub use complaint::*;
 pub use description::*;
 
 use crate::clearance::Clearance;
-use crate::contact::{NormalLaw, stiffness};
+use crate::contact::{Damping, NormalLaw, stiffness};
 use crate::course::Course;
 use crate::friction::{self, Friction};
 use crate::joint::{self, Pair, Relation};
@@ -344,7 +344,10 @@ fn normal_law<S: Scalar>(normal: &NormalDescription, bearing: S, journal: S) -> 
         }
         StiffnessDescription::Number(k) => k.value(),
     };
-    let damping_weight = normal.law.weight(number(normal.restitution.as_ref()));
+    let damping_weight = match &normal.achieved_restitution {
+        Some(achieved) => Damping::Exact.weight(achieved.value()),
+        None => normal.law.weight(number(normal.restitution.as_ref())),
+    };
     NormalLaw::new(k, normal.exponent.value(), damping_weight)
 }
 

@@ -19,6 +19,23 @@ fn a_set_key_is_read_and_stands_in_the_text_as_run() {
 }
 
 #[test]
+fn what_is_set_takes_the_place_of_what_would_say_the_same() {
+    let normal = "joints.A.clearance.normal";
+    let achieved = format!("{normal}.achieved_restitution=0.9");
+    let set = ["run.revolutions=2.5", "drives.crank.speed_rpm=-7000", &achieved];
+    let case = Case::from_text(Path::new("a.toml"), FOUR_BAR_A, &changes(&set, false)).unwrap();
+    assert_eq!(case.plan.duration.to_f64(), 2.5 * 60.0 / 7000.0);
+    assert!(!case.text.contains("duration") && !case.text.contains(" restitution"), "{}", case.text);
+    let set = ["run.revolutions=2.5", "run.duration=0.01"];
+    let case = Case::from_text(Path::new("a.toml"), FOUR_BAR_A, &changes(&set, false)).unwrap();
+    assert_eq!(case.plan.duration.to_f64(), 0.01);
+    // five turns of 12 ms are 60 ms to the last place
+    let set = ["run.revolutions=5"];
+    let case = Case::from_text(Path::new("a.toml"), FOUR_BAR_A, &changes(&set, false)).unwrap();
+    assert_eq!(case.plan.duration.to_string(), "0.06");
+}
+
+#[test]
 fn tables_that_a_set_key_needs_are_made() {
     let text = &FOUR_BAR_A[..FOUR_BAR_A.find("[run]").unwrap()];
     let set = [

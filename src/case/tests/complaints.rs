@@ -190,7 +190,17 @@ const BAD: &[(&str, &str, &str)] = &[
     (
         "restitution = 0.9, ",
         "",
-        "joints.A.clearance.normal.restitution: is missing; law \"lankarani-nikravesh\" needs it",
+        "joints.A.clearance.normal.restitution: is missing; law \"lankarani-nikravesh\" needs it, or achieved_restitution",
+    ),
+    (
+        "restitution = 0.9",
+        "achieved_restitution = 0.5",
+        "joints.A.clearance.normal.achieved_restitution: is 0.5, but law \"lankarani-nikravesh\" rebounds at 0.6630 of the speed or more; `freeplay laws` has others",
+    ),
+    (
+        "restitution = 0.9",
+        "restitution = 0.9, achieved_restitution = 0.9",
+        "joints.A.clearance.normal.achieved_restitution: the restitution is given too: one of the two determines the law",
     ),
     (
         "restitution = 0.9",
@@ -329,6 +339,12 @@ const BAD: &[(&str, &str, &str)] = &[
         "sample_interval = 1e-5",
         "sample_interval = -1",
         "run.sample_interval: must be positive (s), is -1",
+    ),
+    ("duration        = 0.060", "revolutions = 0", "run.revolutions: must be positive, is 0"),
+    (
+        "duration        = 0.060",
+        "duration = 0.06\nrevolutions = 5",
+        "run.revolutions: the duration is given too: one of the two says how long the run is",
     ),
     ("duration        = 0.060", "duration = inf", "run.duration: must be finite (s), is inf"),
     (

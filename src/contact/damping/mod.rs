@@ -3,6 +3,7 @@
 //! A nominal restitution e goes in. What one isolated impact rebounds at is another number for most
 //! laws ([`rebound`](super::rebound)).
 
+use super::rebound;
 use crate::scalar::Scalar;
 
 /// What a law says of itself.
@@ -62,4 +63,55 @@ laws! {
     Exact in exact,
     #[cfg(test)]
     Scratch in scratch,
+}
+
+/// A restitution smaller than any that is meant.
+const NEXT_TO_NONE: f64 = 1e-9;
+
+impl Damping {
+    /// What an impact rebounds at, over its speed, with the smallest nominal restitution.
+    pub fn least_rebound(self) -> f64 {
+        rebound(self.weight(NEXT_TO_NONE))
+    }
+
+    /// The nominal restitution with which one impact by itself rebounds at `achieved` of its speed;
+    /// `None` where no restitution does.
+    pub fn nominal(self, achieved: f64) -> Option<f64> {
+        let wanted: f64 = Damping::Exact.weight(achieved);
+        // a larger restitution has a smaller weight
+        let (mut low, mut high) = (NEXT_TO_NONE, 1.0);
+        if !(wanted <= self.weight(low) && wanted >= self.weight(high)) {
+            return None;
+        }
+        for _ in 0..100 {
+            let middle = f64::midpoint(low, high);
+            if self.weight(middle) > wanted { low = middle } else { high = middle }
+        }
+        Some(f64::midpoint(low, high))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_law_with_its_nominal_restitution_rebounds_at_what_was_asked_for() {
+        for (word, law) in Damping::ALL.iter().filter(|(_, law)| law.about().restitution) {
+            for achieved in [0.05, 0.3, 0.6, 0.7, 0.9, 0.99, 1.0] {
+                match law.nominal(achieved) {
+                    Some(nominal) => {
+                        let found = rebound(law.weight(nominal));
+                        assert!((found - achieved).abs() < 1e-12, "{word}: {found} of {achieved}");
+                    }
+                    None => assert!(achieved < law.least_rebound(), "{word}, {achieved}"),
+                }
+            }
+        }
+        assert!(
+            (Damping::LankaraniNikravesh.nominal(0.725_241_114_010_197).unwrap() - 0.5).abs()
+                < 1e-12
+        );
+        assert_eq!(Damping::LankaraniNikravesh.nominal(0.5), None);
+    }
 }
