@@ -31,11 +31,29 @@ enum Wrong {
     Restitution(f64),
 }
 
+/// Refuses what is no restitution.
+pub(super) fn check_restitution(e: f64) -> Result<(), Failure> {
+    if e > 0.0 && e <= 1.0 { Ok(()) } else { Err(Failure::input(Wrong::Restitution(e))) }
+}
+
+/// The laws of the normal force with these names, or all where that is the name.
+pub(super) fn of_names(names: &[String]) -> Result<Vec<Damping>, Failure> {
+    if names == ["all"] {
+        return Ok(Damping::ALL.iter().map(|(_, law)| *law).collect());
+    }
+    let of_name = |name: &String| match Damping::ALL.iter().find(|(word, _)| word == name) {
+        Some((_, law)) => Ok(*law),
+        None => {
+            let near = crate::model::did_you_mean(name, Damping::ALL.iter().map(|(word, _)| *word));
+            Err(Failure::input(Wrong::Name { name: name.clone(), near }))
+        }
+    };
+    names.iter().map(of_name).collect()
+}
+
 /// Prints the laws of normal force and friction, and what each really gives.
 pub(super) fn laws(arguments: &Arguments) -> Result<(), Failure> {
-    if let Some(wrong) = arguments.restitution.iter().find(|e| !(**e > 0.0 && **e <= 1.0)) {
-        return Err(Failure::input(Wrong::Restitution(*wrong)));
-    }
+    arguments.restitution.iter().try_for_each(|e| check_restitution(*e))?;
     let laws = Damping::ALL.iter().copied();
     let laws: Vec<Damping> = match &arguments.name {
         None => laws.map(|(_, law)| law).collect(),

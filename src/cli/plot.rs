@@ -1,6 +1,6 @@
 //! `freeplay plot FILE… -o DIR`
 
-use super::{Failure, signals};
+use super::{Failure, laws, signals};
 use crate::figure::{self, Figure, Format, Options, Over};
 use crate::model::did_you_mean;
 use crate::record::{self, Draft, ResultFile};
@@ -12,8 +12,15 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
     /// Result files (HDF5); one without clearances is drawn dashed beside the others.
-    #[arg(value_name = "FILE", required = true)]
+    #[arg(value_name = "FILE", required_unless_present = "law", conflicts_with = "law")]
     files: Vec<PathBuf>,
+    /// Draw force over penetration in one impact by these laws of the normal force, names with commas
+    /// between, or `all`; needs no files.
+    #[arg(long, value_name = "NAME", value_delimiter = ',')]
+    law: Vec<String>,
+    /// Nominal restitution of these laws.
+    #[arg(long, value_name = "E", default_value = "0.5", requires = "law")]
+    restitution: f64,
     /// Folder for the figures; made if it is missing.
     #[arg(short, long, value_name = "DIR")]
     output: PathBuf,
@@ -118,9 +125,15 @@ enum PlotError {
 /// Draws the figures of result files.
 pub(super) fn plot(arguments: &Arguments) -> Result<(), Failure> {
     signals::end_at_once()?;
-    let files = arguments.files.iter().map(|path| ResultFile::open(path));
-    let files = files.collect::<Result<Vec<_>, _>>().map_err(Failure::input)?;
-    let figures = figure::draw(files, &options(arguments)).map_err(Failure::input)?;
+    let figures = if arguments.law.is_empty() {
+        let files = arguments.files.iter().map(|path| ResultFile::open(path));
+        let files = files.collect::<Result<Vec<_>, _>>().map_err(Failure::input)?;
+        figure::draw(files, &options(arguments)).map_err(Failure::input)?
+    } else {
+        let laws = laws::of_names(&arguments.law)?;
+        laws::check_restitution(arguments.restitution)?;
+        figure::draw_laws(&laws, arguments.restitution, &options(arguments))
+    };
     let figures = chosen(figures, &arguments.only).map_err(Failure::input)?;
     let formats = formats(arguments);
     let written = write(&figures, &formats, arguments);

@@ -35,6 +35,23 @@ impl Impact {
     }
 }
 
+/// The loop of an impact with a damping weight a and an exponent n: penetration and force, each over
+/// the largest of the elastic impact with the same stiffness, mass and speed, at so many moments from
+/// begin to end. Its area is what the impact dissipates.
+pub fn force_loop(a: f64, n: f64, moments: usize) -> Vec<[f64; 2]> {
+    let (from, middle) = (-rebound(a), 0.5 * (1.0 - rebound(a)));
+    let elastic = (0.5 * (n + 1.0)).powf(1.0 / (n + 1.0));
+    let at = |k: usize| {
+        // close together at both ends, where the depth grows as a root
+        let along = (std::f64::consts::PI * k as f64 / (moments - 1) as f64).cos();
+        let u = middle + (1.0 - middle) * along;
+        let fallen = if k == 0 || k + 1 == moments { 0.0 } else { fall(a, u.max(from)).max(0.0) };
+        let depth = ((n + 1.0) * fallen).powf(1.0 / (n + 1.0)) / elastic;
+        [depth, depth.powf(n) * (1.0 + a * u)]
+    };
+    (0..moments).map(at).collect()
+}
+
 /// G(1) − G(x).
 fn fall(a: f64, x: f64) -> f64 {
     if a < 1e-5 {
@@ -86,6 +103,22 @@ mod tests {
         assert!((duration(0.0, 1.5) / depth - 2.943_275).abs() < 1e-6);
         // a linear spring: half a period
         assert!((duration(0.0, 1.0) - std::f64::consts::PI).abs() < 1e-9);
+    }
+
+    #[test]
+    fn the_area_of_a_loop_is_the_energy_that_is_lost() {
+        for law in [Damping::Hertz, Damping::LankaraniNikravesh, Damping::Flores, Damping::HuGuo] {
+            let a: f64 = law.weight(0.6);
+            let moments = force_loop(a, 1.5, 4001);
+            let work =
+                |pair: &[[f64; 2]]| 0.5 * (pair[0][1] + pair[1][1]) * (pair[1][0] - pair[0][0]);
+            let area: f64 = moments.windows(2).map(work).sum();
+            // over K δⁿ⁺¹ of the elastic impact, whose energy is that over n + 1
+            let lost = (1.0 - rebound(a).powi(2)) / 2.5;
+            assert!((area - lost).abs() < 1e-5, "{}: {area} of {lost}", law.about().word);
+            let deepest = moments.iter().map(|moment| moment[0]).fold(0.0, f64::max);
+            assert!((deepest - Impact::new(a, 1.5).depth).abs() < 1e-5);
+        }
     }
 
     #[test]

@@ -14,7 +14,7 @@ mod impact;
 pub mod stiffness;
 
 pub use damping::{About, Damping};
-pub use impact::Impact;
+pub use impact::{Impact, force_loop};
 
 use crate::scalar::Scalar;
 

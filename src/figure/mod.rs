@@ -22,6 +22,7 @@ mod grid;
 mod ink;
 mod inset;
 mod journal_path;
+mod law_loops;
 mod over_time;
 mod palette;
 mod panel;
@@ -37,6 +38,7 @@ mod touching;
 
 pub use encode::EncodeError;
 pub use fonts::{Font, ITALIC, ROMAN};
+pub use law_loops::draw_laws;
 pub use sheet::{DOUBLE_COLUMN, SINGLE_COLUMN};
 
 use crate::record::{self, ResultFile};

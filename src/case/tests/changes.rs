@@ -25,7 +25,11 @@ fn what_is_set_takes_the_place_of_what_would_say_the_same() {
     let set = ["run.revolutions=2.5", "drives.crank.speed_rpm=-7000", &achieved];
     let case = Case::from_text(Path::new("a.toml"), FOUR_BAR_A, &changes(&set, false)).unwrap();
     assert_eq!(case.plan.duration.to_f64(), 2.5 * 60.0 / 7000.0);
-    assert!(!case.text.contains("duration") && !case.text.contains(" restitution"), "{}", case.text);
+    assert!(
+        !case.text.contains("duration") && !case.text.contains(" restitution"),
+        "{}",
+        case.text
+    );
     let set = ["run.revolutions=2.5", "run.duration=0.01"];
     let case = Case::from_text(Path::new("a.toml"), FOUR_BAR_A, &changes(&set, false)).unwrap();
     assert_eq!(case.plan.duration.to_f64(), 0.01);
