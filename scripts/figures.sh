@@ -23,4 +23,6 @@ draw docs/figures/revolution "$out" --over angle --until 0.012 --only \
 draw docs/figures/clearance-0.15 "$out/readings/clearance-0.15" --only force-A
 draw docs/figures/closed-slowest "$out/readings/closed-slowest" --until 0.012 --only force-A
 "$freeplay" plot "$out/four-bar-c.h5" -o docs/figures --force --until 0.018 --only journal-path
+"$freeplay" plot --law lankarani-nikravesh,hunt-crossley,lee-wang,gonthier,flores,exact --text outlines \
+    -o docs/figures --force
 node scripts/frame.mjs "$out/report.html" "#t=12.53&run=four-bar-c" docs/figures/mechanism.png

@@ -6,6 +6,7 @@ mod written;
 use clap::CommandFactory;
 use freeplay::case::{Case, Changes};
 use freeplay::cli::CommandLine;
+use freeplay::contact::{Damping, rebound};
 use freeplay::record::{DATASETS, Dimension};
 use serde_json::Value;
 use std::collections::{BTreeSet, HashMap};
@@ -93,6 +94,23 @@ fn format_md_tells_every_dataset_with_its_dimensions() {
     let text = read("docs/format.md");
     for dimension in Dimension::ALL {
         assert!(quoted(&text).contains(&dimension.name()), "{}", dimension.name());
+    }
+}
+
+#[test]
+fn laws_md_tells_every_law_and_what_it_rebounds_at() {
+    let text = read("docs/laws.md");
+    for (word, law) in Damping::ALL {
+        let row = text.lines().find(|line| line.starts_with(&format!("| `{word}` |")));
+        let row = row.unwrap_or_else(|| panic!("docs/laws.md has no row of {word}"));
+        assert!(row.contains(law.about().formula), "{word}: {row}");
+        for e in [0.9, 0.5, 0.3] {
+            let rebound = format!("{:.6}", rebound(law.weight(e)));
+            assert!(row.contains(&rebound), "{word} at {e}: {rebound} in {row}");
+        }
+    }
+    for kind in freeplay::friction::KINDS {
+        assert!(text.contains(&format!("| `{}` |", kind.word)), "{}", kind.word);
     }
 }
 

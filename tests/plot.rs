@@ -87,6 +87,32 @@ fn what_exists_stays_without_force_and_then_nothing_is_written() {
 }
 
 #[test]
+fn laws_are_drawn_without_a_run() {
+    let folder = folder();
+    let [figures, other] = ["figures", "other"].map(|name| folder.path().join(name));
+    let law = ["--law", "flores,exact,lankarani-nikravesh", "--restitution", "0.7"];
+    assert!(plot(&[], &figures, &law).status.success());
+    assert_eq!(files_in(&figures), ["law-loops.svg"]);
+    let svg = std::fs::read_to_string(figures.join("law-loops.svg")).unwrap();
+    for words in ["flores", "exact", "lankarani-nikravesh", "elastic", " = 0.7"] {
+        assert!(svg.contains(words), "{words}");
+    }
+    assert!(plot(&[], &other, &["--law", "all"]).status.success());
+    for (wrong, words) in [
+        (&["--law", "flors"][..], "did you mean \"flores\"?"),
+        (&["--law", "flores", "--restitution", "1.5"], "greater than 0 and at most 1, is 1.5"),
+        (&["--restitution", "0.5"], "required"),
+        (&[], "required"),
+    ] {
+        let refused = plot(&[], &other, wrong);
+        assert_eq!(refused.status.code(), Some(2), "{refused:?}");
+        assert!(told(&refused).contains(words), "{refused:?}");
+    }
+    let result = run(folder.path(), "four-bar-a");
+    assert_eq!(plot(&[&result], &other, &["--law", "all"]).status.code(), Some(2));
+}
+
+#[test]
 fn figures_can_be_chosen_by_name_and_by_kind() {
     let folder = folder();
     let file = run(folder.path(), "four-bar-a");
