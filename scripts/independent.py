@@ -306,7 +306,7 @@ class Integration:
     def carry(self, until, seen, stops=()):
         """Goes to `until`; `seen(t, y)` is told of the states as it goes on. Steps end at each of
         some times: between its ends a step is known to fewer digits."""
-        guess, stops = 1e-9, [*stops]
+        guess, stops = self.share * 1e-9, [*stops]
         while self.t < until:
             while stops and stops[0] <= self.t:
                 stops.pop(0)
@@ -329,7 +329,7 @@ class Integration:
             time = self.land(time, key)
             seen(time, dense)
             self.switch(key)
-            guess = min(guess, 1e-8)
+            guess = min(guess, self.share * 1e-8)
 
     def first_zero(self, before, end, dense):
         """Time and key of the first function to fall through zero in a step."""
