@@ -523,8 +523,8 @@ def judge(path, case, tolerance=1e-13):
             theirs = stored(file, mechanism, row)
             ours, *others = (scaled(mechanism, state[row], file.attrs) for state in (tight, loose, beside))
             apart = max(np.abs(ours - other).max() for other in others)
-            # two that are off may agree at a moment
-            unsure = max(unsure, 10.0 * (apart + vague) + 1e-12)
+            # two that are off may agree at a moment; a trajectory is off by some tens of tolerances
+            unsure = max(unsure, 10.0 * (apart + vague) + 100.0 * tolerance)
             off = np.abs(theirs - ours).max()
             judged = min(judged, -math.log10(unsure))
             if off > unsure + 10.0**-claim and claim + math.log10(off) > over:
