@@ -144,7 +144,7 @@ fn open(
     // what is no result of ours is not in the way either, or is said to exist below
     let there = ResultFile::open(output).ok();
     if there.as_ref().is_some_and(|there| record::is_whole(there, &case.text)) {
-        record::forget_segments(output);
+        record::tidy(output);
         return Ok(None);
     }
     let mut force = *force;

@@ -322,6 +322,12 @@ fn lock_folder(folder: &Path) -> Option<File> {
     }
 }
 
+/// Removes the temporary files in a folder that processes which are gone have left.
+pub(super) fn remove_left_behind(folder: &Path) {
+    let _one_at_a_time = lock_folder(folder);
+    sweep(folder, OsStr::new(""));
+}
+
 /// Removes the temporary files in a folder whose processes are gone. Gives the process that is
 /// writing one of this stem, if one is.
 fn sweep(folder: &Path, stem: &OsStr) -> Option<u32> {

@@ -8,7 +8,7 @@
 //! made longer.
 
 use super::header::{Ending, Header, Outcome, utc};
-use super::publish::{folder_of, make_names_durable};
+use super::publish::{folder_of, make_names_durable, remove_left_behind};
 use super::reader::ResultFile;
 use super::schema::Dimension;
 use super::store::{Purpose, hdf5_version};
@@ -239,9 +239,10 @@ pub fn is_whole(file: &ResultFile, case_text: &str) -> bool {
     ours && file.is_complete() && file.text("case_toml") == Some(case_text)
 }
 
-/// Removes what is left of the segments of an output.
-pub fn forget_segments(output: &Path) {
+/// Removes what a run that was killed behind its end has left beside its output.
+pub fn tidy(output: &Path) {
     clear(&folder_for(output));
+    remove_left_behind(folder_of(output));
 }
 
 /// Whether there are segments of an output.
@@ -390,8 +391,10 @@ fn number_of(name: &std::ffi::OsStr) -> Option<usize> {
     (segment_name(number) == name).then_some(number)
 }
 
-/// Removes the segments in a folder, the last first, and the folder if nothing else is in it.
+/// Removes the segments in a folder, the last first, what was begun of one, and the folder if nothing
+/// else is in it.
 fn clear(folder: &Path) {
+    remove_left_behind(folder);
     for path in segments_in(folder).unwrap_or_default().iter().rev() {
         let _ = fs::remove_file(path);
     }
@@ -553,7 +556,7 @@ mod tests {
         let lost = segments_in(&segments).unwrap_err();
         assert!(lost.to_string().contains("000003.h5 is missing"), "{lost}");
         fs::remove_file(segments.join("000004.h5")).unwrap();
-        forget_segments(&output);
+        tidy(&output);
         let left = fs::read_dir(&segments).unwrap().count();
         assert_eq!(left, 3);
     }

@@ -113,6 +113,25 @@ fn a_run_that_is_killed_at_any_moment_comes_to_the_same_bytes() {
 }
 
 #[test]
+fn what_a_run_killed_behind_its_end_has_left_goes() {
+    let desk = Desk::new();
+    let (case, output) = (case("four-bar-a"), "whole.h5");
+    let resume = [&run(&case, output, &["run.duration=0.0022"])[..], &["--resume"]].concat();
+    desk.run(&resume).assert_code(0);
+    // a process that is gone had begun a segment, and not yet removed the other name of its result
+    let mut gone = std::process::Command::new("true").spawn().unwrap();
+    gone.wait().unwrap();
+    let process = gone.id();
+    let folder = desk.path("whole.h5.segments");
+    std::fs::create_dir(&folder).unwrap();
+    std::fs::write(folder.join(format!(".000003.h5.partial-{process}")), "begun").unwrap();
+    let other_name = desk.path(&format!(".whole.h5.partial-{process}"));
+    std::fs::hard_link(desk.path(output), &other_name).unwrap();
+    assert!(desk.run(&resume).assert_code(0).out.contains("complete already"));
+    assert!(!other_name.exists() && !folder.exists());
+}
+
+#[test]
 fn a_run_that_stops_at_each_checkpoint_comes_to_the_same_bytes() {
     let desk = Desk::new();
     for (place, (name, keys)) in CASES.iter().enumerate() {
