@@ -3,7 +3,7 @@
 use super::layout::{Coupling, Role};
 use super::{Mechanism, Touch};
 use crate::clearance::Mode;
-use crate::linear::{self, Singular};
+use crate::linear::Singular;
 use crate::load::Powers;
 use crate::plane::{Motion, Vector, Wrench};
 use crate::scalar::Scalar;
@@ -79,7 +79,7 @@ impl<S: Scalar> Mechanism<S> {
                     error,
                 );
             }
-            linear::solve_symmetric(&self.now.matrix, self.layout.rows, &mut self.now.lambda);
+            self.now.matrix.solve(&mut self.now.lambda);
             self.apply_multipliers();
             self.accelerate();
         }
@@ -113,26 +113,23 @@ impl<S: Scalar> Mechanism<S> {
     /// Forms and factors Φ_q M⁻¹ Φ_qᵀ at the poses as placed.
     pub(super) fn factor(&mut self) -> Result<(), Singular> {
         self.reach();
-        let (m, now) = (self.layout.rows, &mut self.now);
-        now.matrix.fill(S::zero());
+        let now = &mut self.now;
+        let entries = now.matrix.entries_mut();
+        entries.fill(S::zero());
         for coupling in &self.layout.couplings {
-            let Coupling { row, column, sides, at, translation } = *coupling;
+            let Coupling { row, column, sides, at, entry, translation } = *coupling;
             let (a, b) = (&now.jacobian[row][sides[0]], &now.jacobian[column][sides[1]]);
             let turning = a[2] * b[2] * self.inverse_masses[at + 2];
-            let sum = now.matrix[row * m + column] + translation + turning;
-            now.matrix[row * m + column] = sum;
-            now.matrix[column * m + row] = sum;
+            entries[entry] = entries[entry] + translation + turning;
         }
         for coupling in &self.layout.uneven_couplings {
-            let Coupling { row, column, sides, at, .. } = *coupling;
+            let Coupling { row, column, sides, at, entry, .. } = *coupling;
             let (a, b) = (&now.jacobian[row][sides[0]], &now.jacobian[column][sides[1]]);
             let along = (a[0] * b[0] + a[1] * b[1]) * self.inverse_masses[at];
             let turning = a[2] * b[2] * self.inverse_masses[at + 2];
-            let sum = now.matrix[row * m + column] + along + turning;
-            now.matrix[row * m + column] = sum;
-            now.matrix[column * m + row] = sum;
+            entries[entry] = entries[entry] + along + turning;
         }
-        linear::factor_symmetric(&mut now.matrix, m)
+        now.matrix.factor()
     }
 
     /// Force and torque that make each driven body move as prescribed, by Newton and Euler from

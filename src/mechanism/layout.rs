@@ -5,6 +5,7 @@
 //! constraints).
 
 use crate::joint::{AngleDrive, Constraint, Derived, MOST_BODIES, Pair, Relation, Travel};
+use crate::linear::Symmetric;
 use crate::model::{Complaint, GROUND, KeyPath, Model};
 use crate::plane::{Pose, Vector};
 use crate::scalar::Scalar;
@@ -59,6 +60,8 @@ pub(super) struct Coupling<S> {
     pub sides: [usize; 2],
     /// Its place in v.
     pub at: usize,
+    /// Where the entry that it adds to stands in Φ_q M⁻¹ Φ_qᵀ.
+    pub entry: usize,
     /// What its translation adds to the entry (1/kg), wherever it stands; zero where that is not a
     /// constant.
     pub translation: S,
@@ -84,6 +87,8 @@ pub(super) struct Layout<S> {
     pub couplings: Vec<Coupling<S>>,
     /// Of the other rows.
     pub uneven_couplings: Vec<Coupling<S>>,
+    /// Φ_q M⁻¹ Φ_qᵀ, with the pattern that these have.
+    pub matrix: Symmetric<S>,
     /// Number n of coordinates.
     pub coordinates: usize,
     /// Number m of constraint rows.
@@ -131,13 +136,20 @@ impl<S: Scalar> Layout<S> {
         }
         match complaints.is_empty() {
             true => {
-                let (couplings, uneven_couplings) = couplings(&constraints, &roles, model.masses());
+                let (mut couplings, mut uneven_couplings) =
+                    couplings(&constraints, &roles, model.masses());
+                let both = || couplings.iter().chain(&uneven_couplings);
+                let matrix = Symmetric::new(rows, both().map(|both| (both.row, both.column)));
+                for both in couplings.iter_mut().chain(&mut uneven_couplings) {
+                    both.entry = matrix.place(both.row, both.column);
+                }
                 Ok(Layout {
                     roles,
                     driven,
                     constraints,
                     couplings,
                     uneven_couplings,
+                    matrix,
                     coordinates,
                     rows,
                 })
@@ -161,6 +173,7 @@ fn couplings<S: Scalar>(
     masses: &[S],
 ) -> (Vec<Coupling<S>>, Vec<Coupling<S>>) {
     let poses = vec![Pose::fixed(); roles.len()];
+    let mut sides_of = vec![Vec::new(); roles.len()];
     let mut all = Vec::new();
     for row in constraints {
         let mut slopes = vec![[[S::zero(); 3]; MOST_BODIES]; row.constraint.rows()];
@@ -170,18 +183,21 @@ fn couplings<S: Scalar>(
         for (side, body) in row.constraint.bodies().into_iter().enumerate() {
             for (r, blocks) in slopes.iter().enumerate() {
                 let along = Vector::new(blocks[side][0], blocks[side][1]);
-                all.push((row.first + r, side, body, along, row.constraint.moves_evenly()));
+                let (row, evenly) = (row.first + r, row.constraint.moves_evenly());
+                all.push((body, row, side, along, evenly));
+                sides_of[body].push((row, side, along, evenly));
             }
         }
     }
     let (mut even, mut uneven) = (Vec::new(), Vec::new());
-    for &(row, side, body, along, evenly) in &all {
+    for (body, row, side, along, evenly) in all {
         let Role::Free(at) = roles[body] else { continue };
-        let shares = all.iter().filter(|(column, _, of, ..)| *column <= row && *of == body);
-        for &(column, other, _, across, also) in shares {
+        let shares = sides_of[body].iter().filter(|(column, ..)| *column <= row);
+        for &(column, other, across, also) in shares {
             let list = if evenly && also { &mut even } else { &mut uneven };
             let translation = along.dot(across) / masses[body];
-            list.push(Coupling { row, column, sides: [side, other], at, translation });
+            let sides = [side, other];
+            list.push(Coupling { row, column, sides, at, entry: 0, translation });
         }
     }
     (even, uneven)

@@ -24,6 +24,7 @@ use crate::clearance::{Clearance, ContactForce, EventSlot, Gap, GapRates, Mode};
 use crate::dae::{Snapshot, Watch};
 use crate::friction::FrictionLaw;
 use crate::joint::{Arms, Blocks, MOST_BODIES, Relation};
+use crate::linear::Symmetric;
 use crate::model::{Complaint, Model};
 use crate::plane::{Motion, Pose, Vector, Wrench};
 use crate::scalar::Scalar;
@@ -96,7 +97,7 @@ struct Evaluation<S> {
     /// Φ_q by row: its blocks for the bodies of the constraint.
     jacobian: Vec<Blocks<S>>,
     /// Φ_q M⁻¹ Φ_qᵀ, later its factors.
-    matrix: Vec<S>,
+    matrix: Symmetric<S>,
     /// Force and torque of each driven body's joint and drive on that body.
     driving: Vec<(Vector<S>, S)>,
 }
@@ -120,7 +121,7 @@ impl<S: Scalar> Evaluation<S> {
             powers: vec![S::zero(); Ledger::of(model).len()],
             arms: vec![[Vector::zero(); 2]; layout.constraints.len()],
             jacobian: vec![[[S::zero(); 3]; MOST_BODIES]; layout.rows],
-            matrix: vec![S::zero(); layout.rows * layout.rows],
+            matrix: layout.matrix.clone(),
             driving: vec![(Vector::zero(), S::zero()); layout.driven.len()],
         }
     }

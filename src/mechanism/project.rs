@@ -190,7 +190,7 @@ impl<S: Scalar> Mechanism<S> {
     /// Subtracts M⁻¹ Φ_qᵀ (Φ_q M⁻¹ Φ_qᵀ)⁻¹ λ.
     fn correct(&mut self, x: &mut [S]) -> Result<(), Fault> {
         self.factor().map_err(|singular| self.singular(singular))?;
-        linear::solve_symmetric(&self.now.matrix, self.layout.rows, &mut self.now.lambda);
+        self.now.matrix.solve(&mut self.now.lambda);
         self.now.wrenches.fill(Wrench::none());
         self.apply_multipliers();
         for (body, role) in self.layout.roles.iter().enumerate() {

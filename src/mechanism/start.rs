@@ -24,7 +24,7 @@ use super::layout::{Origin, Role, Row, key};
 use crate::clearance::Mode;
 use crate::dae::{Fault, State, System};
 use crate::joint::{Blocks, Constraint, MOST_BODIES, MOST_ROWS, Revolute};
-use crate::linear::{self, Cascade};
+use crate::linear::{self, Cascade, nearest};
 use crate::model::{Complaint, KeyPath, Start};
 use crate::plane::Vector;
 use crate::scalar::Scalar;
@@ -49,6 +49,10 @@ const LATE: usize = 20;
 const VERY_LATE: usize = 60;
 /// A condition seen by less than this in units of rounding, for each unknown, is not seen.
 const BLIND: f64 = 64.0;
+/// Of more unknowns than this, conditions that do not depend on each other are met by their
+/// multipliers, which takes time that grows with the mechanism; of fewer by reflections, which squares
+/// nothing.
+const MANY: usize = 150;
 /// Passes that a linear problem is given to come to rest.
 const MOST_PASSES: usize = 8;
 /// Steps by which a derivative that is carried along follows its value.
@@ -281,11 +285,11 @@ impl<S: Scalar> Mechanism<S> {
         for step in 0..MOST_STEPS {
             let mut conditions = self.position_conditions(q, fixed);
             if step >= VERY_LATE && !near_by {
-                for (k, (row, _)) in conditions.near.iter_mut().enumerate() {
-                    row[k] = S::one();
+                for row in &mut conditions.near {
+                    row.coefficients[0].1 = S::one();
                 }
             }
-            if slow {
+            if slow && q.len() <= MANY {
                 conditions.bend = Some(self.bend(&conditions));
             }
             let Some(change) = conditions.change(step < FIRST_STEPS) else { break };
@@ -373,10 +377,9 @@ impl<S: Scalar> Mechanism<S> {
         error: impl Fn(&Row<S>, &mut [S]),
     ) -> Conditions<S> {
         let scales = self.column_scales();
-        let single = |at: usize, coefficient: S, error: S| {
-            let mut coefficients = vec![S::zero(); scales.len()];
-            coefficients[at] = coefficient;
-            (coefficients, error)
+        let single = |at: usize, coefficient: S, error: S| linear::Row {
+            coefficients: vec![(at, coefficient)],
+            error,
         };
         let written = |rows: &[Row<S>]| {
             let mut out = Vec::new();
@@ -384,13 +387,13 @@ impl<S: Scalar> Mechanism<S> {
                 let mut errors = [S::zero(); MOST_ROWS];
                 error(row, &mut errors);
                 let all = self.coefficients(&row.constraint);
-                for (r, (coefficients, error)) in all.iter().zip(errors).enumerate() {
+                for (r, (mut coefficients, error)) in all.into_iter().zip(errors).enumerate() {
                     let size = match row.constraint.is_angle(r) {
                         true => S::from_f64(self.length),
                         false => S::one(),
                     };
-                    let scaled = coefficients.iter().zip(&scales).map(|(c, s)| *c * *s * size);
-                    out.push((scaled.collect(), error * size));
+                    coefficients.iter_mut().for_each(|(k, a)| *a = *a * scales[*k] * size);
+                    out.push(linear::Row { coefficients, error: error * size });
                 }
             }
             out
@@ -410,14 +413,21 @@ impl<S: Scalar> Mechanism<S> {
     /// Second derivatives of ½|C|² under the exact conditions, as placed: a matrix, row by row.
     fn bend(&self, conditions: &Conditions<S>) -> Vec<S> {
         let n = self.layout.coordinates;
-        let slope = |k: usize| {
-            let wished = conditions.wished.iter();
-            wished.fold(S::zero(), |sum, (row, error)| sum + row[k] * *error)
-        };
+        let mut slope = vec![S::zero(); n];
+        for linear::Row { coefficients, error } in &conditions.wished {
+            coefficients.iter().for_each(|(k, a)| slope[*k] += *a * *error);
+        }
         // what the exact conditions hold against the slope: |Hᵀ μ + Cᵀ C| is least
         let exact = || conditions.joints.iter().chain(&conditions.fixed);
-        let across: Vec<linear::Row<S>> =
-            (0..n).map(|k| (exact().map(|(row, _)| row[k]).collect(), slope(k))).collect();
+        let mut across: Vec<linear::Row<S>> = slope
+            .into_iter()
+            .map(|error| linear::Row { coefficients: Vec::new(), error })
+            .collect();
+        for (row, condition) in exact().enumerate() {
+            for (k, a) in &condition.coefficients {
+                across[*k].coefficients.push((row, *a));
+            }
+        }
         let mut multipliers = Cascade::new(exact().count());
         multipliers.minimise(&across, None, blind::<S>(n));
         let scales = self.column_scales();
@@ -437,23 +447,28 @@ impl<S: Scalar> Mechanism<S> {
             add(&row.constraint, &multipliers.x()[row.range()]);
         }
         for (row, errors) in self.centring().iter().zip(conditions.wished.chunks(2)) {
-            let errors: Vec<S> = errors.iter().map(|(_, error)| *error).collect();
+            let errors: Vec<S> = errors.iter().map(|row| row.error).collect();
             add(&row.constraint, &errors);
         }
         bend
     }
 
-    /// Φ_q of a constraint over all coordinates, row by row.
-    fn coefficients(&self, constraint: &Constraint<S>) -> Vec<Vec<S>> {
+    /// Φ_q of a constraint, row by row: coordinates and coefficients.
+    fn coefficients(&self, constraint: &Constraint<S>) -> Vec<Vec<(usize, S)>> {
         let mut arms = [Vector::zero(); 2];
         let mut rows = vec![[[S::zero(); 3]; MOST_BODIES]; constraint.rows()];
         constraint.reach(&self.now.poses, &mut arms, &mut rows);
         let written = |blocks: &Blocks<S>| {
-            let mut coefficients = vec![S::zero(); self.layout.coordinates];
+            let mut coefficients: Vec<(usize, S)> = Vec::new();
             for (body, block) in constraint.bodies().into_iter().zip(blocks) {
                 let Role::Free(at) = self.layout.roles[body] else { continue };
-                for (c, entry) in block.iter().enumerate() {
-                    coefficients[at + c] += *entry;
+                let something =
+                    |(_, entry): &(usize, &S)| S::CARRIES_DERIVATIVE || **entry != S::zero();
+                for (k, entry) in (at..at + 3).zip(block).filter(something) {
+                    match coefficients.iter_mut().find(|(known, _)| *known == k) {
+                        Some((_, sum)) => *sum += *entry,
+                        None => coefficients.push((k, *entry)),
+                    }
                 }
             }
             coefficients
@@ -617,7 +632,7 @@ impl<S: Scalar> Conditions<S> {
     /// Sum of squares of what is not met; exact conditions weigh more.
     fn error(&self) -> S {
         let squares = |rows: &[linear::Row<S>]| {
-            rows.iter().fold(S::zero(), |sum, (_, error)| sum + *error * *error)
+            rows.iter().fold(S::zero(), |sum, row| sum + row.error * row.error)
         };
         (squares(&self.joints) + squares(&self.fixed)) * S::from_f64(1e3) + squares(&self.wished)
     }
@@ -625,17 +640,20 @@ impl<S: Scalar> Conditions<S> {
     /// The change of the module's header; where centring is weighed against staying, the last two
     /// ranks are one. `None` if it cannot be computed.
     fn change(&self, weighed: bool) -> Option<Change<S>> {
+        if self.near.len() > MANY {
+            if let Some(change) = self.by_multipliers(weighed) {
+                return Some(change);
+            }
+        }
         let first = self.solution(weighed)?;
         if self.bend.is_some() {
             return Some(first);
         }
         // what rounding has left of it is such a problem too
         let after = |rows: &[linear::Row<S>]| {
-            let error = |(row, error): &linear::Row<S>| {
-                let products = row.iter().zip(&first.x);
-                products.fold(*error, |sum, (a, x)| sum + *a * *x)
-            };
-            rows.iter().map(|row| (row.0.clone(), error(row))).collect()
+            let left =
+                |row: &linear::Row<S>| linear::Row { error: row.at(&first.x), ..row.clone() };
+            rows.iter().map(left).collect()
         };
         let second = Conditions {
             joints: after(&self.joints),
@@ -647,6 +665,16 @@ impl<S: Scalar> Conditions<S> {
         let second = second.solution(weighed)?;
         let x = first.x.iter().zip(&second.x).map(|(x, more)| *x + *more).collect();
         Some(Change { x, condition: first.condition })
+    }
+
+    /// The change where no condition depends on others.
+    fn by_multipliers(&self, weighed: bool) -> Option<Change<S>> {
+        let exact = [&*self.joints, &self.fixed];
+        let (x, condition) = match weighed {
+            true => nearest(&exact, &self.wished, &self.near)?,
+            false => nearest(&[exact[0], exact[1], &self.wished], &[], &self.near)?,
+        };
+        Some(Change { x, condition })
     }
 
     fn solution(&self, weighed: bool) -> Option<Change<S>> {

@@ -1,112 +1,28 @@
-//! Small dense linear solves in any arithmetic.
-//!
-//! Square matrices stand row by row in one slice. nalgebra's decompositions want a number type
-//! with far more functions than [`Scalar`] has, and the sizes here are those of a mechanism.
+//! Least squares in ranks.
 
+use super::dense::{factor_symmetric, solve_symmetric};
 use crate::scalar::Scalar;
 
-/// No solution: the pivot of this row is nothing but rounding.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Singular {
-    /// Row at which it was seen.
-    pub row: usize,
+/// One row of a least-squares problem: coefficients a, by unknown, and error e of a·x + e.
+#[derive(Debug, Clone)]
+pub struct Row<S> {
+    /// The unknowns that have a coefficient, and what it is.
+    pub coefficients: Vec<(usize, S)>,
+    /// The error at x = 0.
+    pub error: S,
 }
 
-/// Factors a symmetric positive definite matrix in place into L D Lᵀ (lower triangle; 1/D on the
-/// diagonal).
-pub fn factor_symmetric<S: Scalar>(a: &mut [S], n: usize) -> Result<(), Singular> {
-    // sizes that mechanisms have, known to the compiler
-    match n {
-        2 => factor_sized(&mut a[..4], 2),
-        4 => factor_sized(&mut a[..16], 4),
-        6 => factor_sized(&mut a[..36], 6),
-        _ => factor_sized(a, n),
+impl<S: Scalar> Row<S> {
+    /// a·x + e.
+    pub fn at(&self, x: &[S]) -> S {
+        self.coefficients.iter().fold(self.error, |sum, (k, a)| sum + *a * x[*k])
+    }
+
+    /// The length of a.
+    fn size(&self) -> f64 {
+        self.coefficients.iter().fold(S::zero(), |sum, (_, a)| sum + *a * *a).to_f64().sqrt()
     }
 }
-
-#[inline(always)]
-fn factor_sized<S: Scalar>(a: &mut [S], n: usize) -> Result<(), Singular> {
-    for j in 0..n {
-        let whole = a[j * n + j];
-        let mut pivot = whole;
-        for k in 0..j {
-            // a[j, k] still holds L D, the upper triangle L
-            pivot -= a[j * n + k] * a[k * n + j];
-        }
-        if !(pivot > whole * S::from_f64(1e4 * S::EPSILON)) {
-            return Err(Singular { row: j });
-        }
-        let inverse = S::one() / pivot;
-        for i in j + 1..n {
-            let mut sum = a[i * n + j];
-            for k in 0..j {
-                sum -= a[i * n + k] * a[k * n + j];
-            }
-            a[i * n + j] = sum;
-            a[j * n + i] = sum * inverse;
-        }
-        a[j * n + j] = inverse;
-    }
-    Ok(())
-}
-
-/// Solves with the factors of [`factor_symmetric`], in place.
-pub fn solve_symmetric<S: Scalar>(factors: &[S], n: usize, b: &mut [S]) {
-    match n {
-        2 => solve_sized(&factors[..4], 2, &mut b[..2]),
-        4 => solve_sized(&factors[..16], 4, &mut b[..4]),
-        6 => solve_sized(&factors[..36], 6, &mut b[..6]),
-        _ => solve_sized(factors, n, b),
-    }
-}
-
-#[inline(always)]
-fn solve_sized<S: Scalar>(factors: &[S], n: usize, b: &mut [S]) {
-    for i in 0..n {
-        for k in 0..i {
-            b[i] -= factors[k * n + i] * b[k];
-        }
-    }
-    for i in 0..n {
-        b[i] *= factors[i * n + i];
-    }
-    for i in (0..n).rev() {
-        for k in i + 1..n {
-            b[i] -= factors[i * n + k] * b[k];
-        }
-    }
-}
-
-/// Sign of the determinant of a square matrix, zero of a singular one; eliminates in place.
-pub fn determinant_sign<S: Scalar>(a: &mut [S], n: usize) -> i8 {
-    let mut sign = 1;
-    for k in 0..n {
-        let size = |row: &usize| a[row * n + k].abs().to_f64();
-        let largest = (k..n).max_by(|i, j| size(i).total_cmp(&size(j))).unwrap_or(k);
-        if largest != k {
-            sign = -sign;
-            (0..n).for_each(|c| a.swap(k * n + c, largest * n + c));
-        }
-        let pivot = a[k * n + k];
-        if pivot == S::zero() {
-            return 0;
-        }
-        if pivot < S::zero() {
-            sign = -sign;
-        }
-        for i in k + 1..n {
-            let factor = a[i * n + k] / pivot;
-            for c in k + 1..n {
-                let change = factor * a[k * n + c];
-                a[i * n + c] -= change;
-            }
-        }
-    }
-    sign
-}
-
-/// One row of a least-squares problem: coefficients a and error e of a·x + e.
-pub type Row<S> = (Vec<S>, S);
 
 /// Least-squares problems one after another, each over what those before it leave free:
 /// ```text
@@ -141,9 +57,9 @@ impl<S: Scalar> Cascade<S> {
     ///
     /// Returns the condition number: the largest row over what the last direction was seen with.
     pub fn minimise(&mut self, rows: &[Row<S>], bend: Option<&[S]>, least: f64) -> f64 {
-        let mut along: Vec<Vec<S>> = rows.iter().map(|(a, _)| self.along(a)).collect();
-        let mut right: Vec<S> = rows.iter().map(|(a, e)| -(*e + dot(a, &self.x))).collect();
-        let size = rows.iter().map(|(a, _)| dot(a, a).to_f64().sqrt()).fold(0.0, f64::max);
+        let mut along: Vec<Vec<S>> = rows.iter().map(|row| self.along(row)).collect();
+        let mut right: Vec<S> = rows.iter().map(|row| -row.at(&self.x)).collect();
+        let size = rows.iter().map(Row::size).fold(0.0, f64::max);
         let (rank, smallest) = self.turn(&mut along, &mut right, least * size);
         if rank == 0 {
             return 1.0;
@@ -161,10 +77,10 @@ impl<S: Scalar> Cascade<S> {
     }
 
     /// The components of a row along the free directions.
-    fn along(&self, row: &[S]) -> Vec<S> {
+    fn along(&self, row: &Row<S>) -> Vec<S> {
         let mut along = vec![S::zero(); self.left];
-        for (a, free) in row.iter().zip(&self.free).filter(|(a, _)| is_something(**a)) {
-            along.iter_mut().zip(free).for_each(|(sum, z)| *sum += *a * *z);
+        for (k, a) in row.coefficients.iter().filter(|(_, a)| is_something(*a)) {
+            along.iter_mut().zip(&self.free[*k]).for_each(|(sum, z)| *sum += *a * *z);
         }
         along
     }
@@ -317,59 +233,29 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    fn times(a: &[f64], n: usize, x: &[f64]) -> Vec<f64> {
-        (0..n).map(|i| (0..n).map(|k| a[i * n + k] * x[k]).sum()).collect()
-    }
-
-    #[test]
-    fn the_sign_of_a_determinant_follows_rows_and_factors() {
-        let plain = [2.0, 1.0, 0.0, 1.0, 3.0, 1.0, 0.0, 1.0, 4.0]; // 18
-        let swapped = [0.0, 1.0, 4.0, 1.0, 3.0, 1.0, 2.0, 1.0, 0.0];
-        let flat = [1.0, 2.0, 3.0, 2.0, 4.0, 6.0, 1.0, 0.0, 1.0];
-        for (matrix, sign) in [(plain, 1), (swapped, -1), (plain.map(|x| -x), -1), (flat, 0)] {
-            assert_eq!(determinant_sign(&mut matrix.clone(), 3), sign, "{matrix:?}");
-        }
+    /// A row of all unknowns.
+    fn row(coefficients: impl IntoIterator<Item = f64>, error: f64) -> Row<f64> {
+        Row { coefficients: coefficients.into_iter().enumerate().collect(), error }
     }
 
     proptest! {
         #[test]
-        fn symmetric_solves_undo_products(
-            g in proptest::collection::vec(-1.0..1.0f64, 25),
-            x in proptest::collection::vec(-1.0..1.0f64, 5),
-        ) {
-            let n = 5;
-            let mut a = vec![0.0; n * n];
-            for i in 0..n {
-                for j in 0..n {
-                    a[i * n + j] = (0..n).map(|k| g[i * n + k] * g[j * n + k]).sum::<f64>()
-                        + f64::from(u8::from(i == j));
-                }
-            }
-            let mut b = times(&a, n, &x);
-            factor_symmetric(&mut a, n).unwrap();
-            solve_symmetric(&a, n, &mut b);
-            for (b, x) in b.iter().zip(&x) {
-                prop_assert!((b - x).abs() < 1e-12);
-            }
-        }
-
-        #[test]
         fn a_later_problem_is_solved_among_the_solutions_of_the_earlier(
             g in proptest::collection::vec(-1.0..1.0f64, 42),
         ) {
-            let rows: Vec<Row<f64>> = g.chunks(7).map(|r| (r[..6].to_vec(), r[6])).collect();
+            let rows: Vec<Row<f64>> = g.chunks(7).map(|r| row(r[..6].to_vec(), r[6])).collect();
             let of = |rows: &[Row<f64>], x: &[f64]| -> Vec<f64> {
-                rows.iter().map(|(a, e)| dot(a, x) + e).collect()
+                rows.iter().map(|row| row.at(x)).collect()
             };
             let mut cascade = Cascade::new(6);
             // a third row that says what the first two say already
             let mut first = rows[..2].to_vec();
-            let sum = rows[0].0.iter().zip(&rows[1].0).map(|(a, b)| a + b).collect();
-            first.push((sum, rows[0].1 + rows[1].1));
+            let sum = (0..6).map(|k| rows[0].coefficients[k].1 + rows[1].coefficients[k].1);
+            first.push(row(sum, rows[0].error + rows[1].error));
             let condition = cascade.minimise(&first, None, 1e-12)
                 * cascade.minimise(&rows[2..4], None, 1e-12);
             let least: Vec<Row<f64>> = (0..6)
-                .map(|k| ((0..6).map(|i| f64::from(u8::from(i == k)) * (k + 1) as f64).collect(), 0.1))
+                .map(|k| Row { coefficients: vec![(k, (k + 1) as f64)], error: 0.1 })
                 .collect();
             cascade.minimise(&least, None, 0.0);
             let x = cascade.x();
@@ -381,7 +267,7 @@ mod tests {
                 (0..6).map(|k| (k + 1) as f64 * of(&least, x)[k]).collect();
             let mut across = Cascade::new(4);
             let rows: Vec<Row<f64>> = (0..6)
-                .map(|k| ((0..4).map(|r| rows[r].0[k]).collect(), slope[k]))
+                .map(|k| row((0..4).map(|r| rows[r].coefficients[k].1), slope[k]))
                 .collect();
             across.minimise(&rows, None, 1e-12);
             for left in of(&rows, across.x()) {
@@ -396,22 +282,16 @@ mod tests {
         ) {
             let product = |i: usize, j: usize| dot(&root[3 * i..][..3], &root[3 * j..][..3]);
             let bend: Vec<f64> = (0..9).map(|k| product(k / 3, k % 3)).collect();
-            let rows: Vec<Row<f64>> = g.chunks(4).map(|r| (r[..3].to_vec(), r[3])).collect();
+            let rows: Vec<Row<f64>> = g.chunks(4).map(|r| row(r[..3].to_vec(), r[3])).collect();
             let mut cascade = Cascade::new(3);
             let condition = cascade.minimise(&rows, Some(&bend), 1e-12);
             let x = cascade.x();
             for k in 0..3 {
                 let slope: f64 =
-                    rows.iter().map(|(a, e)| a[k] * (dot(a, x) + e)).sum::<f64>()
+                    rows.iter().map(|row| row.coefficients[k].1 * row.at(x)).sum::<f64>()
                         + dot(&bend[3 * k..][..3], x);
                 prop_assert!(slope.abs() < 1e-13 * condition * condition, "{slope:e}");
             }
         }
-    }
-
-    #[test]
-    fn a_repeated_row_is_named() {
-        let mut a = vec![2.0, 1.0, 2.0, 1.0, 3.0, 1.0, 2.0, 1.0, 2.0];
-        assert_eq!(factor_symmetric(&mut a, 3), Err(Singular { row: 2 }));
     }
 }
