@@ -434,6 +434,10 @@ pub fn header(case: &Case, mechanism: &Mechanism<f64>, started_utc: String) -> H
         drives: names.drives,
         sundials_version: ida::sundials_version(),
         started_utc,
+        samples: match case.plan.checkpoint_interval {
+            None => Some(Schedule::new(&case.plan.duration, &case.plan.sample_interval).len()),
+            Some(_) => None,
+        },
     }
 }
 

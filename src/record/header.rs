@@ -29,6 +29,24 @@ pub struct Header {
     pub attributes: Vec<(String, Attribute)>,
     /// When the run began: attribute `started_utc`; [`utc`] writes it.
     pub started_utc: String,
+    /// How many samples there will be, or somewhat more; `None` where the run may be made longer.
+    pub samples: Option<u64>,
+}
+
+/// Rows of a block at most and, but for wide ones, at least.
+const ROWS: std::ops::RangeInclusive<usize> = 64..=4096;
+/// Bytes that a block's widest table may have.
+const WIDEST: usize = 1 << 22;
+
+impl Header {
+    /// Rows of a block: of a chunk of the file and of what is written at once. Not many more than there
+    /// will be, for a chunk is compressed and kept as a whole.
+    pub(super) fn block_rows(&self) -> usize {
+        let samples = self.samples.and_then(|samples| usize::try_from(samples).ok());
+        let rows = samples.unwrap_or(usize::MAX).clamp(*ROWS.start(), *ROWS.end());
+        let width = self.bodies.len().max(self.joints.len()).max(1) * size_of::<f64>();
+        rows.min(WIDEST / width).max(1)
+    }
 }
 
 /// How a run ended.

@@ -12,13 +12,10 @@ use ndarray::ArrayView2;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-/// Rows of a chunk of the file, and of a block.
-pub(super) const CHUNK_ROWS: usize = 4096;
-
 /// Rows of a chunk along revolutions: most runs have few.
 const CHUNK_REVOLUTIONS: usize = 64;
 
-/// The same of a segment, for rows that are soon copied.
+/// Rows of a chunk of a segment at most, for rows that are soon copied.
 const CHUNK_ROWS_OF_SEGMENTS: usize = 512;
 
 /// Effort of the compression, 0 to 9.
@@ -52,13 +49,23 @@ pub(super) enum Purpose {
     Segment,
 }
 
+/// How a dataset grows: so many rows at once, compressed or not.
+#[derive(Debug, Clone, Copy)]
+struct Chunks {
+    rows: usize,
+    compressed: bool,
+}
+
 impl Purpose {
-    /// Rows of a chunk along a dimension that grows; chunks of less than [`CHUNK_ROWS`] are as they are.
-    fn chunk_rows(self, dimension: Dimension) -> usize {
+    /// Chunks along a dimension that grows.
+    fn chunks(self, dimension: Dimension, block_rows: usize) -> Chunks {
         match (self, dimension) {
-            (_, Dimension::Revolution) => CHUNK_REVOLUTIONS,
-            (Purpose::Result, _) => CHUNK_ROWS,
-            (Purpose::Segment, _) => CHUNK_ROWS_OF_SEGMENTS,
+            // compressing a few numbers takes longer than writing them
+            (_, Dimension::Revolution) => Chunks { rows: CHUNK_REVOLUTIONS, compressed: false },
+            (Purpose::Result, _) => Chunks { rows: block_rows, compressed: true },
+            (Purpose::Segment, _) => {
+                Chunks { rows: block_rows.min(CHUNK_ROWS_OF_SEGMENTS), compressed: false }
+            }
         }
     }
 }
@@ -85,6 +92,7 @@ pub(super) struct Store {
     file: File,
     written: Written,
     purpose: Purpose,
+    block_rows: usize,
     /// Where the file is, and what it will be called.
     at: PathBuf,
     path: PathBuf,
@@ -109,6 +117,7 @@ impl Store {
             file,
             written,
             purpose,
+            block_rows: header.block_rows(),
             at: at.to_owned(),
             path: path.to_owned(),
         };
@@ -122,12 +131,12 @@ impl Store {
             let handle = match names(header, dimension) {
                 Some(names) => named_scale(&self.file, &mut self.written, dimension, names)?,
                 None if dimension == Dimension::Time => {
-                    let rows = self.purpose.chunk_rows(dimension);
-                    create_growing::<f64>(&self.file, dimension.name(), rows, None)?
+                    let chunks = self.chunks(dimension);
+                    create_growing::<f64>(&self.file, dimension.name(), chunks, None)?
                 }
                 None => {
-                    let rows = self.purpose.chunk_rows(dimension);
-                    create_growing::<i32>(&self.file, dimension.name(), rows, None)?
+                    let chunks = self.chunks(dimension);
+                    create_growing::<i32>(&self.file, dimension.name(), chunks, None)?
                 }
             };
             set_scale(&handle, dimension.name())?;
@@ -140,6 +149,10 @@ impl Store {
         Ok(())
     }
 
+    fn chunks(&self, dimension: Dimension) -> Chunks {
+        self.purpose.chunks(dimension, self.block_rows)
+    }
+
     fn create_datasets(&mut self, header: &Header) -> hdf5::Result<()> {
         for dataset in &DATASETS {
             let width =
@@ -148,6 +161,7 @@ impl Store {
                 self.scales[Dimension::Time as usize].1.clone()
             } else {
                 let Dataset { name, unit, long_name, values, .. } = *dataset;
+                let chunks = self.chunks(dataset.rows());
                 let handle = create_dataset(
                     &self.file,
                     &mut self.written,
@@ -155,7 +169,7 @@ impl Store {
                     unit,
                     long_name,
                     values,
-                    (self.purpose.chunk_rows(dataset.rows()), width),
+                    (chunks, width),
                 )?;
                 let dimensions = [dataset.rows()].into_iter().chain(dataset.items());
                 for (place, dimension) in (0..).zip(dimensions) {
@@ -228,6 +242,7 @@ impl Store {
             return Err(format!("{name} has {length} values for {rows} rows").into());
         }
         let Series { name, unit, long_name, stored, .. } = *series;
+        let chunks = self.chunks(series.along);
         let handle = create_dataset(
             &self.file,
             &mut self.written,
@@ -235,7 +250,7 @@ impl Store {
             unit,
             long_name,
             stored,
-            (self.purpose.chunk_rows(series.along), None),
+            (chunks, None),
         )?;
         self.written.scale(&handle, &self.scales[series.along as usize].1, 0)?;
         write_values(&handle, stored, None, 0..rows, &series.values)?;
@@ -328,20 +343,20 @@ fn named_scale(
     Ok(scale)
 }
 
-/// Makes a dataset without rows, in chunks of so many, compressed where they are long; `width` is the number of values in a row, `None` where
-/// the dataset has one dimension.
+/// Makes a dataset without rows; `width` is the number of values in a row, `None` where the dataset has
+/// one dimension.
 fn create_growing<T: H5Type>(
     file: &File,
     name: &str,
-    rows: usize,
+    chunks: Chunks,
     width: Option<usize>,
 ) -> hdf5::Result<hdf5::Dataset> {
     let extents: Vec<Extent> =
         [Extent::resizable(0)].into_iter().chain(width.map(Extent::fixed)).collect();
-    let chunk: Vec<usize> = [rows].into_iter().chain(width.map(|width| width.max(1))).collect();
+    let chunk: Vec<usize> =
+        [chunks.rows].into_iter().chain(width.map(|width| width.max(1))).collect();
     let dataset = file.new_dataset::<T>();
-    // compressing a few numbers takes longer than writing them
-    let dataset = if rows < CHUNK_ROWS { dataset } else { dataset.shuffle().deflate(DEFLATE) };
+    let dataset = if chunks.compressed { dataset.shuffle().deflate(DEFLATE) } else { dataset };
     dataset
         .chunk(chunk)
         .obj_track_times(false)
@@ -357,12 +372,12 @@ fn create_dataset(
     unit: &str,
     long_name: &str,
     stored: Values,
-    (rows, width): (usize, Option<usize>),
+    (chunks, width): (Chunks, Option<usize>),
 ) -> hdf5::Result<hdf5::Dataset> {
     let handle = match stored {
-        Values::Real => create_growing::<f64>(file, name, rows, width),
-        Values::Index => create_growing::<i32>(file, name, rows, width),
-        Values::Flag(_) => create_growing::<i8>(file, name, rows, width),
+        Values::Real => create_growing::<f64>(file, name, chunks, width),
+        Values::Index => create_growing::<i32>(file, name, chunks, width),
+        Values::Flag(_) => create_growing::<i8>(file, name, chunks, width),
     }?;
     written.attribute(&handle, "units", unit)?;
     written.attribute(&handle, "long_name", long_name)?;

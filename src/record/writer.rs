@@ -9,7 +9,7 @@ use super::header::{Ending, Header, Outcome, utc};
 use super::publish::Draft;
 use super::reader::ResultFile;
 use super::schema::{Dimension, Part, Side, Source};
-use super::store::{Block, CHUNK_ROWS, Purpose, Store, datasets_of};
+use super::store::{Block, Purpose, Store, datasets_of};
 use crate::mechanism::Observation;
 use crate::run::{Contact, Event, Extremum, Peak, Recorder, Revolution};
 use std::ops::Range;
@@ -37,6 +37,8 @@ pub struct Writer {
     contacts: Block,
     peaks: Block,
     revolutions: Block,
+    /// Rows of a full block.
+    block_rows: usize,
     /// Rows so far, by dimension.
     rows: [usize; Dimension::ALL.len()],
     /// The dimensions of the full blocks so far, in the order in which they were written.
@@ -107,6 +109,7 @@ impl Writer {
             contacts: Block::new(Dimension::Contact),
             peaks: Block::new(Dimension::Peak),
             revolutions: Block::new(Dimension::Revolution),
+            block_rows: header.block_rows(),
             rows: [0; Dimension::ALL.len()],
             order: Vec::new(),
             widths: Widths {
@@ -215,9 +218,10 @@ impl Writer {
     fn count(&mut self, dimension: Dimension, rows: usize) -> Result<(), Error> {
         self.check()?;
         self.rows[dimension as usize] += rows;
+        let full_at = self.block_rows;
         let block = self.block(dimension);
         block.rows += rows;
-        if block.rows < CHUNK_ROWS {
+        if block.rows < full_at {
             return Ok(());
         }
         let full = std::mem::replace(block, Block::new(dimension));
@@ -264,7 +268,7 @@ impl Writer {
 
     /// How many rows of a dimension make its block full.
     pub(super) fn room(&mut self, dimension: Dimension) -> usize {
-        CHUNK_ROWS - self.block(dimension).rows
+        self.block_rows - self.block(dimension).rows
     }
 }
 

@@ -66,6 +66,7 @@ impl Recorded {
                 ("solver_relative_tolerance".to_owned(), Attribute::Number(1e-12)),
             ],
             started_utc: "2026-03-01T12:00:00Z".to_owned(),
+            samples: None,
         };
         let mut numbers = Numbers(1);
         let mut run = Recorded {
