@@ -17,7 +17,8 @@ use serde::{Deserialize, Serialize};
 
 /// What the search for an extreme may leave out, of the measure's largest magnitude in its revolution.
 pub const LEFT_OUT: f64 = 1e-8;
-/// The same of the largest magnitude of all measures of the unit: what is rounding beside it.
+/// The same of the largest magnitude of all measures of the unit, or of another that a length makes
+/// of it: what is rounding beside it.
 const ROUNDING: f64 = 1e-12;
 /// What a sketch over the phase of [`SKETCHABLE`] may be off by, of the span from the smallest to
 /// the largest; over a shorter one less, by the third power.
@@ -146,6 +147,8 @@ pub(super) struct Tracker {
     /// Which unit each measure has, and the largest magnitude of each.
     units: Vec<usize>,
     magnitudes: [f64; UNITS],
+    /// What makes an angular acceleration of a linear one, and a force of a torque (m).
+    length: f64,
     /// The last stations, and room for the next: see [`Tracker::past`].
     ring: [Station; MEMORY + 1],
     /// Where in the ring the newest is.
@@ -156,13 +159,16 @@ pub(super) struct Tracker {
     looks: Vec<Station>,
     /// Stations of the step, where it is looked into.
     course: Vec<Station>,
+    /// What has been seen inside the present panel, by sketches and by looks.
+    sketches: Vec<Station>,
+    glances: Vec<Station>,
     spare: Vec<Station>,
     finished: Vec<Revolution>,
 }
 
 impl Tracker {
-    /// A tracker for revolutions of this time (s), or for none.
-    pub fn new(measures: Measures, period: Option<f64>) -> Self {
+    /// A tracker for revolutions of this time (s), or for none, of a mechanism of this length (m).
+    pub fn new(measures: Measures, period: Option<f64>, length: f64) -> Self {
         let period = period.unwrap_or(f64::INFINITY);
         let none = Extremum { value: f64::NAN, time: f64::NAN };
         // what is beyond the measures never comes near to anything
@@ -184,11 +190,14 @@ impl Tracker {
             spans: vec![0.0; count],
             units: units(&measures),
             magnitudes: [0.0; UNITS],
+            length,
             ring: std::array::from_fn(|_| station.clone()),
             newest: 0,
             known: 0,
             looks: Vec::new(),
             course: Vec::new(),
+            sketches: Vec::new(),
+            glances: Vec::new(),
             spare: Vec::new(),
             finished: Vec::new(),
         }
@@ -448,6 +457,8 @@ impl Tracker {
     ) -> Result<(), L::Error> {
         let nodes = nodes_around(k, self.course.len());
         let exact = nodes.list[..nodes.count].iter().all(|node| self.course[*node].exact);
+        self.spare.append(&mut self.sketches);
+        self.spare.append(&mut self.glances);
         for place in 0..self.row.largest.len() {
             let mut span = [f64::INFINITY, f64::NEG_INFINITY];
             for node in &nodes.list[..nodes.count] {
@@ -501,50 +512,58 @@ impl Tracker {
         sketch: Option<f64>,
         look: &mut L,
     ) -> Result<(), L::Error> {
-        let mut station = self.station(guess, true);
-        let climbed = self.climb_with(&mut station, panel, guess, (place, sign), sketch, look);
-        self.spare.push(station);
-        climbed
-    }
-
-    fn climb_with<L: Look>(
-        &mut self,
-        station: &mut Station,
-        panel: Panel,
-        guess: f64,
-        (place, sign): (usize, f64),
-        sketch: Option<f64>,
-        look: &mut L,
-    ) -> Result<(), L::Error> {
         let width = panel.times[1] - panel.times[0];
-        let mut bracket = panel.bracket(panel.at(guess));
-        let mut aim = guess;
+        let seen = |stations: &[Station], about: f64| {
+            let places = panel.with(stations, (place, sign));
+            places.filter(|places| places.left.0 < about && about < places.right.0)
+        };
+        let (mut aim, mut expected) = (guess, panel.at(guess));
         if let Some(doubt) = sketch {
+            let mut bracket =
+                seen(&self.sketches, guess).unwrap_or_else(|| panel.bracket(expected));
             let slack = LEFT_OUT * self.spans[place];
+            let mut next = match bracket.best {
+                Some(_) => bracket.next(width, bracket.top() + slack),
+                None => Some(guess),
+            };
             for _ in 0..MOST_LOOKS {
-                look.sketch(aim, &mut station.values)?;
-                bracket.take((aim, sign * station.values[place]));
-                let Some(next) = bracket.next(width, bracket.top() + slack) else { break };
-                aim = next;
+                let Some(aim) = next else { break };
+                let known = self.sketches.iter().position(|sketch| sketch.time == aim);
+                let known = match known {
+                    Some(known) => known,
+                    None => {
+                        let mut station = self.station(aim, false);
+                        look.sketch(aim, &mut station.values)?;
+                        self.sketches.push(station);
+                        self.sketches.len() - 1
+                    }
+                };
+                bracket.take((aim, sign * self.sketches[known].values[place]));
+                next = bracket.next(width, bracket.top() + slack);
             }
             let Some(summit) = bracket.best else { return Ok(()) };
             if summit.1 + doubt < self.bar(place, sign) {
                 return Ok(());
             }
-            aim = summit.0;
-            bracket = panel.bracket(summit.1);
+            (aim, expected) = summit;
         }
-        bracket.take(self.look(aim, (place, sign), station, look)?);
+        if let Some(mut bracket) = seen(&self.glances, aim) {
+            if bracket.next(width, self.bar(place, sign)).is_none() {
+                return Ok(());
+            }
+        }
+        let mut bracket = panel.bracket(expected);
+        bracket.take(self.look(aim, (place, sign), look)?);
         if sketch.is_some() && !bracket.may_pass(self.bar(place, sign)) {
             return Ok(());
         }
         if !panel.ends_exact {
-            bracket.left = self.look(panel.times[0], (place, sign), station, look)?;
-            bracket.right = self.look(panel.times[1], (place, sign), station, look)?;
+            bracket.left = self.look(panel.times[0], (place, sign), look)?;
+            bracket.right = self.look(panel.times[1], (place, sign), look)?;
         }
         for _ in 1..MOST_LOOKS {
             let Some(next) = bracket.next(width, self.bar(place, sign)) else { break };
-            bracket.take(self.look(next, (place, sign), station, look)?);
+            bracket.take(self.look(next, (place, sign), look)?);
         }
         Ok(())
     }
@@ -555,12 +574,17 @@ impl Tracker {
         &mut self,
         time: f64,
         (place, sign): (usize, f64),
-        station: &mut Station,
         look: &mut L,
     ) -> Result<(f64, f64), L::Error> {
-        let time = look.look(time, false, &mut station.values)?;
-        self.take(time, &station.values);
-        Ok((time, sign * station.values[place]))
+        if let Some(known) = self.glances.iter().find(|glance| glance.time == time) {
+            return Ok((time, sign * known.values[place]));
+        }
+        let mut station = self.station(time, true);
+        station.time = look.look(time, false, &mut station.values)?;
+        self.take(station.time, &station.values);
+        let seen = (station.time, sign * station.values[place]);
+        self.glances.push(station);
+        Ok(seen)
     }
 
     /// Takes all measures at a time (s) as candidates for records.
@@ -583,9 +607,13 @@ impl Tracker {
         let largest = self.row.largest[place].value;
         let smallest = self.row.smallest.get(place).map_or(0.0, |smallest| smallest.value);
         let magnitude = largest.abs().max(smallest.abs());
-        let of_unit = &mut self.magnitudes[self.units[place]];
-        *of_unit = of_unit.max(magnitude);
-        let slack = LEFT_OUT * magnitude + ROUNDING * *of_unit;
+        let unit = self.units[place];
+        self.magnitudes[unit] = self.magnitudes[unit].max(magnitude);
+        let [linear, angular, force, torque] = self.magnitudes;
+        let by_length = [angular, linear, torque, force][unit];
+        let factor = if unit == 0 || unit == 3 { self.length } else { 1.0 / self.length };
+        let of_unit = self.magnitudes[unit].max(factor * by_length);
+        let slack = LEFT_OUT * magnitude + ROUNDING * of_unit;
         self.high[place] = largest + slack;
         if place < self.row.smallest.len() {
             self.low[place] = smallest - slack;
@@ -735,6 +763,35 @@ impl Panel {
             expected,
             missed: 0.0,
         }
+    }
+
+    /// The places about the highest of the stations inside, where it has lower ones on both sides:
+    /// what others have seen is not looked at again.
+    fn with(&self, stations: &[Station], (place, sign): (usize, f64)) -> Option<Bracket> {
+        let [left, right] = [self.times[0], self.times[1]];
+        let inside = stations.iter().filter(|station| station.time > left && station.time < right);
+        let mut seen: Vec<(f64, f64)> =
+            inside.map(|station| (station.time, sign * station.values[place])).collect();
+        if seen.is_empty() {
+            return None;
+        }
+        let are_exact = stations[0].exact;
+        if self.ends_exact || !are_exact {
+            seen.extend([(left, self.values[0]), (right, self.values[1])]);
+        }
+        seen.sort_by(|a, b| a.0.total_cmp(&b.0));
+        // differences over less than that are rounding
+        seen.dedup_by(|a, b| a.0 - b.0 <= 1e-6 * (right - left));
+        let best = (0..seen.len()).max_by(|a, b| seen[*a].1.total_cmp(&seen[*b].1))?;
+        let (before, after) = (seen.get(best.checked_sub(1)?)?, seen.get(best + 1)?);
+        let (before, best_place, after) = (*before, seen[best], *after);
+        let beyond = best.checked_sub(2).and_then(|far| seen.get(far)).or(seen.get(best + 2));
+        let expected = match beyond {
+            Some(beyond) => parabola(before, after, *beyond, best_place.0),
+            None => self.at(best_place.0),
+        };
+        let missed = (best_place.1 - expected).abs();
+        Some(Bracket { left: before, right: after, best: Some(best_place), expected, missed })
     }
 
     /// Newton's divided differences.
@@ -922,7 +979,7 @@ mod tests {
         parts: Parts,
     ) -> (Vec<Revolution>, usize) {
         let measures = Measures { drives: 1, ..Measures::default() };
-        let mut tracker = Tracker::new(measures, period);
+        let mut tracker = Tracker::new(measures, period, 1.0);
         tracker.restart(times[0], |values| values[0] = curve(times[0]));
         let wiggle = if pace > 0.0 { 0.0 } else { 1e-3 };
         let mut look = Curve(&curve, 0, wiggle);
@@ -1068,7 +1125,7 @@ mod tests {
     fn rounding_beside_a_large_measure_is_left_alone() {
         // the first body shakes, the second does so by rounding
         let measures = Measures { bodies: 1, ..Measures::default() };
-        let mut tracker = Tracker::new(measures, None);
+        let mut tracker = Tracker::new(measures, None, 1.0);
         tracker.restart(0.0, |values| values[..3].copy_from_slice(&[1e6, 1e-9, 0.0]));
         for k in 1..1000 {
             let noise = 1e-10 * f64::from(k * 7919 % 1000);

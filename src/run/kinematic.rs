@@ -64,7 +64,7 @@ fn go<S: Scalar, R: Recorder>(
     let corners = mechanism.corners();
     let mut progress = Progress::default();
     let mut tracker = (recorder.keeps_revolutions())
-        .then(|| Tracker::new(mechanism.measures(), mechanism.revolution()));
+        .then(|| Tracker::new(mechanism.measures(), mechanism.revolution(), mechanism.length()));
     let mut next = 0;
     if let Some(kept) = stretch.from {
         (now, progress, next) = (kept.state.clone(), kept.progress, kept.next_sample);

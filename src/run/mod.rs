@@ -237,7 +237,7 @@ where
     let allowed_depths = system.model().clearances().iter().map(deepest).collect();
     let tracker = recorder
         .keeps_revolutions()
-        .then(|| Box::new(Tracker::new(system.measures(), system.revolution())));
+        .then(|| Box::new(Tracker::new(system.measures(), system.revolution(), system.length())));
     let mut run = Run {
         scratch: start.clone(),
         touching: vec![None; clearances],
