@@ -1,4 +1,4 @@
-//! Binds the two functions that tell SUNDIALS' version and that `sundials-sys` leaves out, and
+//! Binds what `sundials-sys` leaves out of SUNDIALS, its version and its sparse linear solver, and
 //! tells the program which commit it is built from.
 
 use std::path::{Path, PathBuf};
@@ -12,24 +12,37 @@ fn main() {
     println!("cargo::rerun-if-changed=build.rs");
     println!("cargo::rerun-if-env-changed=SUNDIALS_INCLUDE_DIR");
     println!("cargo::rustc-env=FREEPLAY_COMMIT={}", commit().unwrap_or_default());
-    if let Err(complaint) = bind_version() {
+    if let Err(complaint) = bind_sundials() {
         eprintln!("error: {complaint}");
         exit(1);
     }
 }
 
-fn bind_version() -> Result<(), String> {
+fn bind_sundials() -> Result<(), String> {
     let include = std::env::var("SUNDIALS_INCLUDE_DIR").map(|folder| format!("-I{folder}"));
+    println!("cargo::rustc-link-lib=sundials_sunlinsolklu");
     let bindings = bindgen::Builder::default()
-        .header_contents("version.h", "#include <sundials/sundials_version.h>\n")
+        .header_contents(
+            "sundials.h",
+            "#include <sundials/sundials_version.h>\n#include <sunlinsol/sunlinsol_klu.h>\n",
+        )
         .clang_args(include.ok())
-        .allowlist_function("SUNDIALSGetVersion.*")
+        .clang_arg("-I/usr/include/suitesparse")
+        .allowlist_function("SUNDIALSGetVersionNumber")
+        .allowlist_function("SUNLinSol_KLU(ReInit)?")
+        .allowlist_var("SUNKLU_REINIT_PARTIAL")
+        // these are those of `sundials-sys`
+        .blocklist_type(".*")
+        .raw_line("use std::os::raw::c_char;")
+        .raw_line(
+            "use sundials_sys::{N_Vector, SUNContext, SUNLinearSolver, SUNMatrix, sunindextype};",
+        )
         .layout_tests(false)
         .generate()
         .map_err(|cause| format!("{HEADERS_MISSING}\n{cause}"))?;
     let out = std::env::var("OUT_DIR").map_err(|cause| format!("OUT_DIR: {cause}"))?;
     bindings
-        .write_to_file(PathBuf::from(out).join("sundials_version.rs"))
+        .write_to_file(PathBuf::from(out).join("sundials.rs"))
         .map_err(|cause| format!("the bindings could not be written: {cause}"))
 }
 

@@ -244,15 +244,28 @@ pub trait Dae: System<f64> {
         residual: &mut [f64],
     ) -> Result<(), Fault>;
 
-    /// ∂F/∂y + c_j ∂F/∂ẏ, written into a zeroed matrix.
+    /// ∂F/∂y + c_j ∂F/∂ẏ, entry by entry.
     fn jacobian(
         &mut self,
         t: f64,
         y: &[f64],
         yp: &[f64],
         cj: f64,
-        jacobian: &mut nalgebra::DMatrixViewMut<'_, f64>,
+        jacobian: &mut impl Entries,
     ) -> Result<(), Fault>;
+}
+
+/// A matrix that takes its entries one by one.
+pub trait Entries {
+    /// Adds to an entry, which is zero before.
+    fn add(&mut self, row: usize, column: usize, entry: f64);
+}
+
+impl Entries for nalgebra::DMatrix<f64> {
+    #[inline(always)]
+    fn add(&mut self, row: usize, column: usize, entry: f64) {
+        self[(row, column)] += entry;
+    }
 }
 
 /// Where a step ended.

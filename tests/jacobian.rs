@@ -74,8 +74,7 @@ fn modes<S: Scalar>(mechanism: &Mechanism<S>, clearance: usize) -> Vec<Mode<S>> 
 fn by_hand(mechanism: &mut Mechanism<f64>, trial: &Trial) -> DMatrix<f64> {
     let size = trial.y.len();
     let mut jacobian = DMatrix::zeros(size, size);
-    let mut view = jacobian.as_view_mut();
-    mechanism.jacobian(trial.t, &trial.y, &trial.yp, trial.cj, &mut view).unwrap();
+    mechanism.jacobian(trial.t, &trial.y, &trial.yp, trial.cj, &mut jacobian).unwrap();
     jacobian
 }
 

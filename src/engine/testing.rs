@@ -1,8 +1,7 @@
 //! Small systems with known solutions, shared by the tests of the engines.
 
-use crate::dae::{Course, Dae, Fault, State, System, Watch};
+use crate::dae::{Course, Dae, Entries, Fault, State, System, Watch};
 use crate::scalar::Scalar;
-use nalgebra::DMatrixViewMut;
 
 /// One constraint Φ(q) = 0 at a state.
 pub(crate) struct Constraint {
@@ -211,7 +210,7 @@ impl<F: Formulas> Dae for Sample<F> {
         y: &[f64],
         yp: &[f64],
         cj: f64,
-        jacobian: &mut DMatrixViewMut<'_, f64>,
+        jacobian: &mut impl Entries,
     ) -> Result<(), Fault> {
         let (mut y, mut yp) = (y.to_vec(), yp.to_vec());
         let mut sides = [vec![0.0; y.len()], vec![0.0; y.len()]];
@@ -227,7 +226,7 @@ impl<F: Formulas> Dae for Sample<F> {
             }
             (y[j], yp[j]) = (kept, kept_rate);
             for i in 0..y.len() {
-                jacobian[(i, j)] = (sides[0][i] - sides[1][i]) / (2.0 * step);
+                jacobian.add(i, j, (sides[0][i] - sides[1][i]) / (2.0 * step));
             }
         }
         Ok(())
@@ -348,14 +347,13 @@ impl Dae for Relaxing<f64> {
         _: &[f64],
         _: &[f64],
         cj: f64,
-        jacobian: &mut DMatrixViewMut<'_, f64>,
+        jacobian: &mut impl Entries,
     ) -> Result<(), Fault> {
-        for (at, entry) in
-            [((0, 1), -1.0), ((1, 2), 1.0), ((2, 1), -2.0), ((0, 0), cj), ((1, 1), cj)]
+        for (row, column, entry) in
+            [(0, 1, -1.0), (1, 2, 1.0), (2, 1, -2.0), (0, 0, cj), (1, 1, cj), (2, 2, cj + 3.0)]
         {
-            jacobian[at] = entry;
+            jacobian.add(row, column, entry);
         }
-        jacobian[(2, 2)] = cj + 3.0;
         Ok(())
     }
 }

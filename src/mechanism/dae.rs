@@ -11,10 +11,9 @@
 use super::Mechanism;
 use super::layout::Role;
 use crate::clearance::Mode;
-use crate::dae::{Dae, Fault, State};
+use crate::dae::{Dae, Entries, Fault, State};
 use crate::plane::{Motion, Vector, Wrench};
 use crate::scalar::Scalar;
-use nalgebra::DMatrixViewMut;
 
 impl<S: Scalar> Mechanism<S> {
     /// The residual in any arithmetic.
@@ -89,18 +88,18 @@ impl Dae for Mechanism<f64> {
         y: &[f64],
         yp: &[f64],
         cj: f64,
-        j: &mut DMatrixViewMut<'_, f64>,
+        j: &mut impl Entries,
     ) -> Result<(), Fault> {
         let n = self.layout.coordinates;
         self.stand(t, y, yp);
         self.apply_loads(&[]);
         for k in 0..n {
-            j[(k, k)] = cj;
-            j[(k, n + k)] = -1.0;
-            j[(n + k, n + k)] = cj;
+            j.add(k, k, cj);
+            j.add(k, n + k, -1.0);
+            j.add(n + k, n + k, cj);
         }
         for k in 0..self.now.z.len() {
-            j[(2 * n + k, 2 * n + k)] = cj;
+            j.add(2 * n + k, 2 * n + k, cj);
         }
         for clearance in 0..self.modes.len() {
             self.contact_entries(clearance, j);
@@ -113,7 +112,7 @@ impl Dae for Mechanism<f64> {
 
 impl Mechanism<f64> {
     /// −M⁻¹ ∂Q/∂(q, v, z) and −∂f/∂(q, v, z) of one contact.
-    fn contact_entries(&self, k: usize, j: &mut DMatrixViewMut<'_, f64>) {
+    fn contact_entries(&self, k: usize, j: &mut impl Entries) {
         let (Some(touch), Mode::Contact(contact)) = (&self.now.touches[k], &self.modes[k]) else {
             return;
         };
@@ -128,7 +127,7 @@ impl Mechanism<f64> {
             let slopes = law.inner_slopes(gap, rates, force);
             self.subtract(law.pair.i, at, &slopes.bearing, j);
             self.subtract(law.pair.j, at, &slopes.journal, j);
-            j[(at, at)] -= rate.d_inner;
+            j.add(at, at, -rate.d_inner);
         }
         for (of_journal, body) in [(false, law.pair.i), (true, law.pair.j)] {
             let Some(at) = self.place_in_q(body) else { continue };
@@ -144,15 +143,15 @@ impl Mechanism<f64> {
                 self.subtract(law.pair.i, n + at + c, &slopes.bearing, j);
                 self.subtract(law.pair.j, n + at + c, &slopes.journal, j);
                 if let Some((row, rate)) = inner {
-                    j[(row, at + c)] -= rate.d_slip * by_q.slip;
-                    j[(row, n + at + c)] -= rate.d_slip * by_v.slip;
+                    j.add(row, at + c, -(rate.d_slip * by_q.slip));
+                    j.add(row, n + at + c, -(rate.d_slip * by_v.slip));
                 }
             }
         }
     }
 
     /// −M⁻¹ ∂Q/∂(q, v) of the loads.
-    fn load_entries(&self, j: &mut DMatrixViewMut<'_, f64>) {
+    fn load_entries(&self, j: &mut impl Entries) {
         let (n, now) = (self.layout.coordinates, &self.now);
         for load in self.model.loads() {
             let Some(bodies) = load.bodies() else { continue };
@@ -171,23 +170,17 @@ impl Mechanism<f64> {
     }
 
     /// Subtracts M⁻¹ of a change of a body's wrench in one column.
-    fn subtract(
-        &self,
-        body: usize,
-        column: usize,
-        change: &Wrench<f64>,
-        j: &mut DMatrixViewMut<'_, f64>,
-    ) {
+    fn subtract(&self, body: usize, column: usize, change: &Wrench<f64>, j: &mut impl Entries) {
         let Some(at) = self.place_in_q(body) else { return };
         let row = self.layout.coordinates + at;
         let by = &self.inverse_masses[at..at + 3];
-        j[(row, column)] -= by[0] * change.force.x;
-        j[(row + 1, column)] -= by[1] * change.force.y;
-        j[(row + 2, column)] -= by[2] * change.moment;
+        j.add(row, column, -(by[0] * change.force.x));
+        j.add(row + 1, column, -(by[1] * change.force.y));
+        j.add(row + 2, column, -(by[2] * change.moment));
     }
 
     /// M⁻¹ Φ_qᵀ, M⁻¹ ∂(Φ_qᵀ λ)/∂q, c_j Φ_q and ∂Φ̈/∂(q, v).
-    fn constraint_entries(&self, cj: f64, j: &mut DMatrixViewMut<'_, f64>) {
+    fn constraint_entries(&self, cj: f64, j: &mut impl Entries) {
         let n = self.layout.coordinates;
         let now = &self.now;
         for row in &self.layout.constraints {
@@ -196,7 +189,7 @@ impl Mechanism<f64> {
             let place = |(side, c): (usize, usize)| Some(bodies[side]? + c);
             constraint.bend(&now.poses, &now.lambda[row.range()], |of, by, entry| {
                 let (Some(of), Some(by)) = (place(of), place(by)) else { return };
-                j[(n + of, by)] += self.inverse_masses[of] * entry;
+                j.add(n + of, by, self.inverse_masses[of] * entry);
             });
             let first = 2 * n + now.z.len() + row.first;
             for (r, blocks) in now.jacobian[row.range()].iter().enumerate() {
@@ -204,16 +197,16 @@ impl Mechanism<f64> {
                 for (at, block) in bodies.into_iter().zip(blocks) {
                     let Some(at) = at else { continue };
                     for (c, entry) in block.iter().enumerate() {
-                        j[(n + at + c, equation)] += self.inverse_masses[at + c] * entry;
-                        j[(equation, n + at + c)] += cj * entry;
+                        j.add(n + at + c, equation, self.inverse_masses[at + c] * entry);
+                        j.add(equation, n + at + c, cj * entry);
                     }
                 }
             }
             let (poses, motions, accelerations) = (&now.poses, &now.motions, &now.accelerations);
             constraint.acceleration_slopes(poses, motions, accelerations, |r, by, [q, v]| {
                 let (equation, Some(by)) = (first + r, place(by)) else { return };
-                j[(equation, by)] += q;
-                j[(equation, n + by)] += v;
+                j.add(equation, by, q);
+                j.add(equation, n + by, v);
             });
         }
     }

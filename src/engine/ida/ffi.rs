@@ -9,6 +9,7 @@
 
 use super::Error;
 use super::inverse;
+use super::matrix::{Dense, Sparse};
 use super::shared::{Calls, Shared};
 use super::tolerance::{Norm, Weights};
 use super::vector_operations as operations;
@@ -18,9 +19,9 @@ use std::ptr;
 use std::slice;
 use sundials_sys::*;
 
-mod version {
-    #![allow(non_upper_case_globals, non_camel_case_types, non_snake_case, dead_code)]
-    include!(concat!(env!("OUT_DIR"), "/sundials_version.rs"));
+mod left_out {
+    #![allow(non_upper_case_globals, non_camel_case_types, non_snake_case, unused_imports)]
+    include!(concat!(env!("OUT_DIR"), "/sundials.rs"));
 }
 
 const _: () = assert!(
@@ -35,7 +36,7 @@ pub(super) fn version() -> [i32; 3] {
     let mut label: [c_char; 16] = [0; 16];
     // SAFETY: the pointers are to three integers and to a buffer of the length given.
     unsafe {
-        version::SUNDIALSGetVersionNumber(
+        left_out::SUNDIALSGetVersionNumber(
             &mut major,
             &mut minor,
             &mut patch,
@@ -68,7 +69,7 @@ struct Matrix(SUNMatrix);
 
 impl Drop for Matrix {
     fn drop(&mut self) {
-        // SAFETY: made by `SUNDenseMatrix`, freed once, after the solvers that use it.
+        // SAFETY: made by `new_matrix`, freed once, after the solvers that use it.
         unsafe { SUNMatDestroy(self.0) }
     }
 }
@@ -142,14 +143,13 @@ impl<Y: Dae> Solver<Y> {
     ) -> Result<Self, Error> {
         let differential = 2 * system.coordinates() + system.inner_states();
         let (unknowns, norm) = (differential + system.multipliers(), weights.norm());
-        let size = unknowns as sunindextype;
         let context = new_context()?;
         let y = new_vector(unknowns, &context)?;
         override_operations(&y, norm, stock_vector_operations);
         let yp = clone_vector(&y)?;
         let between = clone_vector(&y)?;
-        // SAFETY: the context is alive.
-        let matrix = Matrix(made(unsafe { SUNDenseMatrix(size, size, context.0) }, "a matrix")?);
+        let sparse = unknowns > DENSE_UNKNOWNS && !stock_vector_operations;
+        let matrix = new_matrix(&context, unknowns, sparse)?;
         // SAFETY: the context is alive.
         let memory = Memory(made(unsafe { IDACreate(context.0) }, "an integrator")?);
         let linear_solver = if stock_vector_operations {
@@ -157,18 +157,30 @@ impl<Y: Dae> Solver<Y> {
             let linear_solver = unsafe { SUNLinSol_Dense(y.0, matrix.0, context.0) };
             LinearSolver(made(linear_solver, "a linear solver")?)
         } else {
-            own_linear_solver(&context, &memory, differential, unknowns)?
+            let method = match sparse {
+                true => Method::Factors { klu: new_klu(&context, &y, &matrix)?, analysed: 0 },
+                false => {
+                    let (exchanges, pivot_column) = (vec![0; unknowns], vec![0.0; unknowns]);
+                    Method::Inverse { exchanges, pivot_column }
+                }
+            };
+            own_linear_solver(&context, &memory, differential, method)?
         };
-        let shared = SharedBox(Box::into_raw(Box::new(Shared::new(system, weights))));
+        let mut shared = Shared::new(system, weights);
+        if sparse {
+            shared.sparse = Sparse::new(unknowns);
+        }
+        let shared = SharedBox(Box::into_raw(Box::new(shared)));
         let mut solver =
             Solver { memory, linear_solver, matrix, y, yp, between, shared, _context: context };
-        solver.set_up(max_step, stock_vector_operations)?;
+        solver.set_up(max_step, stock_vector_operations, sparse)?;
         Ok(solver)
     }
 
     /// The calls that IDA wants once.
-    fn set_up(&mut self, max_step: f64, stock: bool) -> Result<(), Error> {
+    fn set_up(&mut self, max_step: f64, stock: bool, sparse: bool) -> Result<(), Error> {
         let (ida, shared) = (self.memory.0, self.shared.0);
+        let jacobian = if sparse { sparse_jacobian::<Y> } else { jacobian::<Y> };
         let longest = if max_step.is_finite() { max_step } else { 0.0 };
         // SAFETY: IDA, vectors, matrix and linear solver are alive as long as `self`; `shared` is
         // the `Shared<Y>` that the callbacks of the same `Y` expect. The order is IDA's.
@@ -180,7 +192,7 @@ impl<Y: Dae> Solver<Y> {
                 IDAWFtolerances(ida, Some(weigh::<Y>)),
                 IDASetLinearSolver(ida, self.linear_solver.0, self.matrix.0),
                 IDASetLinearSolutionScaling(ida, c_int::from(stock)),
-                IDASetJacFn(ida, Some(jacobian::<Y>)),
+                IDASetJacFn(ida, Some(jacobian)),
                 IDASetMaxOrd(ida, 5),
                 IDASetMaxStep(ida, longest),
                 IDASetMaxNumSteps(ida, -1),
@@ -308,6 +320,9 @@ impl<Y: Dae> Solver<Y> {
     }
 }
 
+/// Systems of more unknowns are solved by sparse factors.
+const DENSE_UNKNOWNS: usize = 60;
+
 /// A pointer that SUNDIALS returned, if it could make what it points to.
 fn made<T>(pointer: *mut T, what: &'static str) -> Result<*mut T, Error> {
     if pointer.is_null() { Err(Error::Memory(what)) } else { Ok(pointer) }
@@ -318,6 +333,27 @@ fn new_context() -> Result<Context, Error> {
     // SAFETY: without MPI the communicator is null; the context is written through the pointer.
     unsafe { SUNContext_Create(ptr::null_mut(), &mut context) };
     Ok(Context(made(context, "a context")?))
+}
+
+/// A square matrix: dense, or sparse with its entries column by column.
+fn new_matrix(context: &Context, unknowns: usize, sparse: bool) -> Result<Matrix, Error> {
+    let size = unknowns as sunindextype;
+    // SAFETY: the context is alive.
+    let matrix = unsafe {
+        match sparse {
+            true => SUNSparseMatrix(size, size, size, CSC_MAT as c_int, context.0),
+            false => SUNDenseMatrix(size, size, context.0),
+        }
+    };
+    Ok(Matrix(made(matrix, "a matrix")?))
+}
+
+/// SUNDIALS' solver by the sparse factors of KLU (Davis and Palamadai Natarajan 2010, ACM
+/// Transactions on Mathematical Software 37, article 36).
+fn new_klu(context: &Context, vector: &Vector, matrix: &Matrix) -> Result<LinearSolver, Error> {
+    // SAFETY: vector, matrix and context are alive and of one size; the matrix is a sparse one.
+    let klu = unsafe { left_out::SUNLinSol_KLU(vector.0, matrix.0, context.0) };
+    Ok(LinearSolver(made(klu, "a linear solver")?))
 }
 
 fn new_vector(length: usize, context: &Context) -> Result<Vector, Error> {
@@ -503,37 +539,38 @@ unsafe extern "C" fn root_mean_square(x: N_Vector, w: N_Vector) -> f64 {
 struct LinearContent {
     /// The integrator that it solves for.
     ida: *mut c_void,
-    /// c_j for which the matrix was inverted (1/s).
-    inverted_for: f64,
+    /// c_j for which the matrix was set up (1/s).
+    set_up_for: f64,
     /// Place of the first multiplier among the unknowns.
     multipliers_from: usize,
-    exchanges: Vec<usize>,
-    pivot_column: Vec<f64>,
+    method: Method,
 }
 
-/// A linear solver that works with the inverse of the matrix, and scales its solutions itself.
+/// How linear equations are solved.
+enum Method {
+    /// By the inverse of a dense matrix, with scratch space.
+    Inverse { exchanges: Vec<usize>, pivot_column: Vec<f64> },
+    /// By the factors of a sparse one; `analysed` counts the entries of the pattern they are for.
+    Factors { klu: LinearSolver, analysed: usize },
+}
+
+/// A linear solver that scales its solutions itself.
 fn own_linear_solver(
     context: &Context,
     memory: &Memory,
     multipliers_from: usize,
-    unknowns: usize,
+    method: Method,
 ) -> Result<LinearSolver, Error> {
     // SAFETY: the context is alive.
     let solver = made(unsafe { SUNLinSolNewEmpty(context.0) }, "a linear solver")?;
-    let content = LinearContent {
-        ida: memory.0,
-        inverted_for: f64::NAN,
-        multipliers_from,
-        exchanges: vec![0; unknowns],
-        pivot_column: vec![0.0; unknowns],
-    };
+    let content = LinearContent { ida: memory.0, set_up_for: f64::NAN, multipliers_from, method };
     // SAFETY: a linear solver owns its table and content; nothing else refers to them yet.
     unsafe {
         (*solver).content = Box::into_raw(Box::new(content)).cast();
         let table = &mut *(*solver).ops;
         table.gettype = Some(is_direct);
-        table.setup = Some(invert);
-        table.solve = Some(multiply);
+        table.setup = Some(set_up);
+        table.solve = Some(solve);
         table.free = Some(free_own);
     }
     Ok(LinearSolver(solver))
@@ -553,47 +590,69 @@ unsafe extern "C" fn free_own(solver: SUNLinearSolver) -> c_int {
     SUNLS_SUCCESS as c_int
 }
 
-/// Replaces the matrix by its inverse.
-unsafe extern "C" fn invert(solver: SUNLinearSolver, matrix: SUNMatrix) -> c_int {
-    // SAFETY: IDA calls with the square dense matrix of `Solver::new`, and does not use it itself;
-    // the content is that of `own_linear_solver`, and its integrator is the one that calls.
-    let regular = unsafe {
+/// Replaces the matrix by its inverse, or factors it.
+unsafe extern "C" fn set_up(solver: SUNLinearSolver, matrix: SUNMatrix) -> c_int {
+    // SAFETY: IDA calls with the matrix of `Solver::new`, and does not use it itself; the content is
+    // that of `own_linear_solver`, its integrator is the one that calls, and its method is the one
+    // that the kind of matrix was made for.
+    unsafe {
         let content = &mut *(*solver).content.cast::<LinearContent>();
-        IDAGetCurrentCj(content.ida, &mut content.inverted_for);
-        let n = content.exchanges.len();
-        let numbers = slice::from_raw_parts_mut(SUNDenseMatrix_Data(matrix), n * n);
-        inverse::invert(numbers, &mut content.exchanges, &mut content.pivot_column)
-    };
-    if regular { SUNLS_SUCCESS as c_int } else { SUNLS_LUFACT_FAIL as c_int }
+        IDAGetCurrentCj(content.ida, &mut content.set_up_for);
+        match &mut content.method {
+            Method::Inverse { exchanges, pivot_column } => {
+                let n = exchanges.len();
+                let numbers = slice::from_raw_parts_mut(SUNDenseMatrix_Data(matrix), n * n);
+                let regular = inverse::invert(numbers, exchanges, pivot_column);
+                if regular { SUNLS_SUCCESS as c_int } else { SUNLS_LUFACT_FAIL as c_int }
+            }
+            Method::Factors { klu, analysed } => {
+                let columns = SUNSparseMatrix_Columns(matrix) as usize;
+                let entries = *SUNSparseMatrix_IndexPointers(matrix).add(columns);
+                if entries as usize != *analysed {
+                    *analysed = entries as usize;
+                    let partial = left_out::SUNKLU_REINIT_PARTIAL as c_int;
+                    left_out::SUNLinSol_KLUReInit(klu.0, matrix, entries, partial);
+                }
+                SUNLinSolSetup(klu.0, matrix)
+            }
+        }
+    }
 }
 
-/// Solves with the inverse.
+/// Solves with the inverse or the factors.
 ///
-/// Where c_j has changed since the matrix was inverted, changes of q, v and z are scaled as IDA would
+/// Where c_j has changed since the matrix was set up, changes of q, v and z are scaled as IDA would
 /// scale all: by 2/(1 + c_j/c_j⁽⁰⁾). The multipliers are not: theirs follow accelerations, whose
 /// size does not depend on c_j. What IDA's scaling leaves of them no norm sees, and extrapolation
 /// makes it thirty times larger in the next step: they grew to 1e15 until no step was left.
-unsafe extern "C" fn multiply(
+unsafe extern "C" fn solve(
     solver: SUNLinearSolver,
     matrix: SUNMatrix,
     x: N_Vector,
     b: N_Vector,
-    _tolerance: f64,
+    tolerance: f64,
 ) -> c_int {
-    // SAFETY: as in `invert`, which was called before; the vectors are distinct and of its size.
+    // SAFETY: as in `set_up`, which was called before; the vectors are distinct and of its size.
     unsafe {
         let content = &*(*solver).content.cast::<LinearContent>();
-        let (x, b) = (components_mut(x), components(b));
-        let numbers = slice::from_raw_parts(SUNDenseMatrix_Data(matrix), b.len() * b.len());
-        inverse::multiply(numbers, b, x);
-        let mut cj = content.inverted_for;
+        let solved = match &content.method {
+            Method::Inverse { .. } => {
+                let (x, b) = (components_mut(x), components(b));
+                let numbers = slice::from_raw_parts(SUNDenseMatrix_Data(matrix), b.len() * b.len());
+                inverse::multiply(numbers, b, x);
+                SUNLS_SUCCESS as c_int
+            }
+            Method::Factors { klu, .. } => SUNLinSolSolve(klu.0, matrix, x, b, tolerance),
+        };
+        let mut cj = content.set_up_for;
         IDAGetCurrentCj(content.ida, &mut cj);
-        let ratio = cj / content.inverted_for;
+        let ratio = cj / content.set_up_for;
         if ratio != 1.0 {
-            operations::scale_in_place(2.0 / (1.0 + ratio), &mut x[..content.multipliers_from]);
+            let changes = &mut components_mut(x)[..content.multipliers_from];
+            operations::scale_in_place(2.0 / (1.0 + ratio), changes);
         }
+        solved
     }
-    SUNLS_SUCCESS as c_int
 }
 
 /// Runs `f` for a callback and returns the flag that IDA expects.
@@ -641,7 +700,48 @@ unsafe extern "C" fn jacobian<Y: Dae>(
     unsafe {
         let (y, yp) = (components(y), components(yp));
         let columns = slice::from_raw_parts_mut(SUNDenseMatrix_Data(matrix), y.len() * y.len());
-        guard::<Y>(user, time, |shared| shared.jacobian(time, y, yp, cj, columns))
+        let mut dense = Dense { columns, size: y.len() };
+        guard::<Y>(user, time, |shared| shared.jacobian(time, y, yp, cj, &mut dense))
+    }
+}
+
+unsafe extern "C" fn sparse_jacobian<Y: Dae>(
+    time: f64,
+    cj: f64,
+    y: N_Vector,
+    yp: N_Vector,
+    _residual: N_Vector,
+    matrix: SUNMatrix,
+    user: *mut c_void,
+    _: N_Vector,
+    _: N_Vector,
+    _: N_Vector,
+) -> c_int {
+    // SAFETY: as in `residual`; the matrix is the sparse one of `Solver::new`, whose arrays have as
+    // many members as it says, and one pointer more than columns.
+    unsafe {
+        let (y, yp) = (components(y), components(yp));
+        guard::<Y>(user, time, |shared| {
+            let mut sparse = std::mem::take(&mut shared.sparse);
+            sparse.clear();
+            let written = shared.jacobian(time, y, yp, cj, &mut sparse);
+            let entries = sparse.values.len();
+            let more = entries as sunindextype > SUNSparseMatrix_NNZ(matrix);
+            if more && SUNSparseMatrix_Reallocate(matrix, entries as sunindextype) != 0 {
+                return Err(Fault::Fatal("there is no memory for the Newton matrix".into()));
+            }
+            let index = |place: &usize| *place as sunindextype;
+            let fill = |to: *mut sunindextype, from: &[usize]| {
+                let to = slice::from_raw_parts_mut(to, from.len());
+                to.iter_mut().zip(from).for_each(|(to, from)| *to = index(from));
+            };
+            slice::from_raw_parts_mut(SUNSparseMatrix_Data(matrix), entries)
+                .copy_from_slice(&sparse.values);
+            fill(SUNSparseMatrix_IndexValues(matrix), &sparse.rows);
+            fill(SUNSparseMatrix_IndexPointers(matrix), &sparse.begins);
+            shared.sparse = sparse;
+            written
+        })
     }
 }
 

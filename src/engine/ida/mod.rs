@@ -15,6 +15,7 @@ mod error;
 mod events;
 mod ffi;
 mod inverse;
+mod matrix;
 mod quadrature;
 mod shared;
 mod tolerance;

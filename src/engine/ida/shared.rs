@@ -1,9 +1,9 @@
 //! What IDA's callbacks work on, and what they leave behind when they stop it.
 
 use super::Error;
+use super::matrix::{Columns, Sparse};
 use super::tolerance::Weights;
-use crate::dae::{Dae, Fault};
-use nalgebra::DMatrixViewMut;
+use crate::dae::{Dae, Entries, Fault};
 use std::any::Any;
 use std::ffi::c_int;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
@@ -25,6 +25,8 @@ pub(super) struct Calls {
 pub(super) struct Shared<Y> {
     pub(super) system: Y,
     pub(super) weights: Weights,
+    /// The Newton matrix of a large system.
+    pub(super) sparse: Sparse,
     pub(super) calls: Calls,
     /// What IDA said last.
     pub(super) words: String,
@@ -38,6 +40,7 @@ impl<Y: Dae> Shared<Y> {
         Shared {
             system,
             weights,
+            sparse: Sparse::default(),
             calls: Calls::default(),
             words: String::new(),
             setback: None,
@@ -90,19 +93,19 @@ impl<Y: Dae> Shared<Y> {
         finite(residual, "the equations of motion")
     }
 
-    /// The Jacobian, column by column.
+    /// The Jacobian, into a matrix of zeros.
     pub(super) fn jacobian(
         &mut self,
         time: f64,
         y: &[f64],
         yp: &[f64],
         cj: f64,
-        columns: &mut [f64],
+        matrix: &mut (impl Entries + Columns),
     ) -> Result<(), Fault> {
         self.calls.jacobians += 1;
-        let mut view = DMatrixViewMut::from_slice(columns, y.len(), y.len());
-        self.system.jacobian(time, y, yp, cj, &mut view)?;
-        self.weights.know_rounding(time, y, cj, columns);
+        self.system.jacobian(time, y, yp, cj, matrix)?;
+        matrix.settle();
+        self.weights.know_rounding(time, y, cj, matrix);
         Ok(())
     }
 }

@@ -27,6 +27,7 @@
 //! 1e-20, that error is allowed, and the step counted; else steps would shrink with the velocity.
 
 use super::Error;
+use super::matrix::Columns;
 use std::ops::Range;
 
 /// The smallest absolute tolerance: with it, squares of weighted numbers stay below 1e300.
@@ -116,15 +117,13 @@ impl Weights {
     }
 
     /// Takes in what rounding makes of a step with c_j (1/s) near the time t (s) and
-    /// y = (q, v, z, λ), from the Jacobian there, column by column.
-    pub(super) fn know_rounding(&mut self, t: f64, y: &[f64], cj: f64, columns: &[f64]) {
-        let (size, n, differential) = (y.len(), self.sizes.len(), self.floor.len());
+    /// y = (q, v, z, λ), from the Jacobian there.
+    pub(super) fn know_rounding(&mut self, t: f64, y: &[f64], cj: f64, jacobian: &impl Columns) {
+        let (n, differential) = (self.sizes.len(), self.floor.len());
         let (floor_q, floor_v) = self.floor.split_at_mut(n);
         floor_v.fill(0.0);
         let mut add = |column: usize, rounding: f64, rows: Range<usize>| {
-            let floor = &mut floor_v[rows.start - n..rows.end - n];
-            let entries = &columns[size * column..][rows];
-            floor.iter_mut().zip(entries).for_each(|(v, entry)| *v += rounding * entry.abs());
+            jacobian.each(column, rows, |row, entry| floor_v[row - n] += rounding * entry.abs());
         };
         let late = 0.5 * (t.abs().next_up() - t.abs());
         let rounding = |j: usize| {
@@ -178,7 +177,13 @@ impl Weights {
 
 #[cfg(test)]
 mod tests {
+    use super::super::matrix::Dense;
     use super::*;
+
+    /// A matrix of two columns.
+    fn dense(columns: &mut [f64; 4]) -> Dense<'_> {
+        Dense { columns, size: 2 }
+    }
 
     fn weights(norm: Norm, absolute: AbsoluteTolerance, y: &[f64]) -> Vec<f64> {
         let mut weights = Weights::new(1e-6, absolute, norm, (&[2.0], &[300.0]), &[]).unwrap();
@@ -205,19 +210,19 @@ mod tests {
             weights.fill(&y, &mut w);
             assert!(w[1] > 1e19 && weights.floored() == 0);
             // Column by column: c_j, stiffness; −1, c_j.
-            weights.know_rounding(0.0, &y, cj, &[cj, stiffness, -1.0, cj]);
+            weights.know_rounding(0.0, &y, cj, &dense(&mut [cj, stiffness, -1.0, cj]));
             weights.fill(&y, &mut w);
             let expected = f64::EPSILON * 3.0 * stiffness / cj;
             assert!((w[1] * expected - 1.0).abs() < 1e-12, "{w:?}");
             assert!((w[0] * 3e-12 - 1.0).abs() < 1e-7, "q has no need of it: {w:?}");
             assert_eq!(weights.floored(), 1);
             // Steps longer than the contact vibrates move the coordinate by its rounding.
-            weights.know_rounding(0.0, &y, 1e3, &[1e3, stiffness, -1.0, 1e3]);
+            weights.know_rounding(0.0, &y, 1e3, &dense(&mut [1e3, stiffness, -1.0, 1e3]));
             weights.fill(&y, &mut w);
             assert!((w[1] * f64::EPSILON * 3.0 * 1e3 - 1.0).abs() < 1e-12, "{w:?}");
             // Late in a run the rounding of the time moves it by more: 300 · ½ ulp(8.4).
             let late = 300.0 * f64::EPSILON * 4.0;
-            weights.know_rounding(8.4, &y, cj, &[cj, stiffness, -1.0, cj]);
+            weights.know_rounding(8.4, &y, cj, &dense(&mut [cj, stiffness, -1.0, cj]));
             weights.fill(&y, &mut w);
             assert!((w[1] * late * stiffness / cj - 1.0).abs() < 1e-12, "{w:?}");
             weights.forget_rounding();
