@@ -1,8 +1,11 @@
 //! `freeplay new KIND`
 
+mod four_bars;
+
 use super::{Failure, signals};
 use crate::record::{self, Draft};
 use clap::ValueEnum;
+use std::borrow::Cow;
 use std::path::PathBuf;
 
 /// Arguments of `new`.
@@ -11,6 +14,9 @@ pub struct Arguments {
     /// What the case describes.
     #[arg(value_enum)]
     kind: Kind,
+    /// How many four-bars `four-bars` has.
+    #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u16).range(1..=9999))]
+    count: u16,
     /// Case file to write; default: the kind's name with .toml, in this folder.
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
@@ -33,12 +39,14 @@ enum Kind {
     DoublePendulum,
     /// A shaft that falls in its bearing.
     JournalInBearing,
+    /// Four-bars in a row, `--count` of them; ideal joints.
+    FourBars,
 }
 
 impl Kind {
     /// Name of the file, and what is in it.
-    fn file(self) -> (&'static str, &'static str) {
-        match self {
+    fn file(self, count: u16) -> (&'static str, Cow<'static, str>) {
+        let (name, text) = match self {
             Kind::FourBar => ("four-bar.toml", include_str!("new/four-bar.toml")),
             Kind::SliderCrank => ("slider-crank.toml", include_str!("new/slider-crank.toml")),
             Kind::SixBar => ("six-bar.toml", include_str!("new/six-bar.toml")),
@@ -49,14 +57,16 @@ impl Kind {
             Kind::JournalInBearing => {
                 ("journal-in-bearing.toml", include_str!("new/journal-in-bearing.toml"))
             }
-        }
+            Kind::FourBars => return ("four-bars.toml", four_bars::four_bars(count).into()),
+        };
+        (name, text.into())
     }
 }
 
 /// Writes a commented case file to start from.
 pub(super) fn new(arguments: &Arguments) -> Result<(), Failure> {
     signals::end_at_once()?;
-    let (name, text) = arguments.kind.file();
+    let (name, text) = arguments.kind.file(arguments.count);
     let path = arguments.output.clone().unwrap_or_else(|| name.into());
     let write = || -> Result<(), record::Error> {
         Draft::create(&path, arguments.force)?.publish_bytes(text.as_bytes())
@@ -78,8 +88,8 @@ mod tests {
     #[test]
     fn every_kind_is_a_case_that_names_itself_and_can_be_assembled() {
         for kind in Kind::value_variants() {
-            let (name, text) = kind.file();
-            let case = Case::from_text(Path::new(name), text, &Changes::default());
+            let (name, text) = kind.file(3);
+            let case = Case::from_text(Path::new(name), &text, &Changes::default());
             let case = case.unwrap_or_else(|error| panic!("{error}"));
             assert_eq!(
                 Some(name.strip_suffix(".toml").unwrap()),
