@@ -27,10 +27,7 @@ pub fn nearest<S: Scalar>(
     let hard_rows: usize = hard.iter().map(|rows| rows.len()).sum();
     let rows: Vec<&Row<S>> = hard.iter().copied().flatten().chain(soft).collect();
     let mut matrix = coupled(&rows, hard_rows, &mobility);
-    let largest = (0..hard_rows).fold(0.0, |largest: f64, row| {
-        let place = matrix.place(row, row);
-        largest.max(matrix.entries_mut()[place].to_f64())
-    });
+    let largest = matrix.diagonal().take(hard_rows).fold(0.0, f64::max);
     matrix.factor().ok()?;
     let smallest = matrix.pivots().take(hard_rows).fold(f64::INFINITY, f64::min);
     let condition = if hard_rows == 0 { 1.0 } else { (largest / smallest).sqrt() };

@@ -10,7 +10,7 @@ use crate::scalar::Scalar;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Matrices of at most so many rows are dense.
-const DENSE_ROWS: usize = 8;
+const DENSE_ROWS: usize = 6;
 
 /// A symmetric matrix, given by its lower triangle, or its factors.
 #[derive(Debug, Clone)]
@@ -20,8 +20,8 @@ pub struct Symmetric<S> {
     plan: Option<Plan>,
     /// Entries by [`place`](Self::place); later the factors, with 1/D on the diagonal.
     entries: Vec<S>,
-    /// The diagonal as it was before the elimination, by row.
-    diagonal: Vec<S>,
+    /// The diagonal as it was before the elimination, in its order.
+    whole: Vec<S>,
 }
 
 /// The order of an elimination, and where everything stands. Of the p-th row that is eliminated the
@@ -45,7 +45,7 @@ impl<S: Scalar> Symmetric<S> {
     pub fn new(rows: usize, entries: impl IntoIterator<Item = (usize, usize)>) -> Self {
         let plan = (rows > DENSE_ROWS).then(|| Plan::new(rows, entries));
         let held = plan.as_ref().map_or(rows * rows, |plan| plan.row_of.len());
-        Symmetric { rows, plan, entries: vec![S::zero(); held], diagonal: vec![S::zero(); rows] }
+        Symmetric { rows, plan, entries: vec![S::zero(); held], whole: vec![S::zero(); rows] }
     }
 
     /// Where an entry of the pattern stands in [`entries_mut`](Self::entries_mut); the row is not
@@ -71,13 +71,18 @@ impl<S: Scalar> Symmetric<S> {
     pub fn factor(&mut self) -> Result<(), Singular> {
         match &self.plan {
             None => dense::factor_symmetric(&mut self.entries, self.rows),
-            Some(plan) => plan.factor(&mut self.entries, &mut self.diagonal),
+            Some(plan) => plan.factor(&mut self.entries, &mut self.whole),
         }
+    }
+
+    /// The diagonal of the matrix, by row, as long as it is not factored.
+    pub fn diagonal(&self) -> impl Iterator<Item = f64> + '_ {
+        (0..self.rows).map(|row| self.entries[self.place(row, row)].to_f64())
     }
 
     /// The pivots of the factors, D, by row.
     pub fn pivots(&self) -> impl Iterator<Item = f64> + '_ {
-        (0..self.rows).map(|row| 1.0 / self.entries[self.place(row, row)].to_f64())
+        self.diagonal().map(f64::recip)
     }
 
     /// Solves with the factors, in place.
@@ -141,13 +146,13 @@ impl Plan {
         held.start + among.unwrap_or_else(|| unreachable!("the pattern has the entry"))
     }
 
-    fn factor<S: Scalar>(&self, entries: &mut [S], diagonal: &mut [S]) -> Result<(), Singular> {
-        for (whole, at) in diagonal.iter_mut().zip(&self.columns) {
+    fn factor<S: Scalar>(&self, entries: &mut [S], wholes: &mut [S]) -> Result<(), Singular> {
+        for (whole, at) in wholes.iter_mut().zip(&self.columns) {
             *whole = entries[*at];
         }
         let mut targets = self.targets.iter();
         let least = S::from_f64(1e4 * S::EPSILON);
-        for (p, whole) in diagonal.iter().enumerate() {
+        for (p, whole) in wholes.iter().enumerate() {
             let (at, end) = (self.columns[p], self.columns[p + 1]);
             let pivot = entries[at];
             if !(pivot > *whole * least) {

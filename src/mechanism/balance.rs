@@ -3,6 +3,7 @@
 use super::layout::{Coupling, Role};
 use super::{Mechanism, Touch};
 use crate::clearance::Mode;
+use crate::dae::State;
 use crate::linear::Singular;
 use crate::load::Powers;
 use crate::plane::{Motion, Vector, Wrench};
@@ -112,6 +113,12 @@ impl<S: Scalar> Mechanism<S> {
 
     /// Forms and factors Φ_q M⁻¹ Φ_qᵀ at the poses as placed.
     pub(super) fn factor(&mut self) -> Result<(), Singular> {
+        self.couple();
+        self.now.matrix.factor()
+    }
+
+    /// Forms Φ_q M⁻¹ Φ_qᵀ at the poses as placed.
+    fn couple(&mut self) {
         self.reach();
         let now = &mut self.now;
         let entries = now.matrix.entries_mut();
@@ -129,7 +136,22 @@ impl<S: Scalar> Mechanism<S> {
             let turning = a[2] * b[2] * self.inverse_masses[at + 2];
             entries[entry] = entries[entry] + along + turning;
         }
-        now.matrix.factor()
+    }
+
+    /// The joint or drive whose constraints depend most on the others at a state, and the share of
+    /// their mass–constraint matrix that the others leave; `None` without constraints.
+    pub fn weakest_joint(&mut self, state: State<'_, S>) -> Option<(String, f64)> {
+        self.place(&state);
+        self.couple();
+        let whole: Vec<f64> = self.now.matrix.diagonal().collect();
+        let (row, left) = match self.now.matrix.factor() {
+            Err(Singular { row }) => (row, 0.0),
+            Ok(()) => {
+                let left = self.now.matrix.pivots().zip(whole).map(|(pivot, whole)| pivot / whole);
+                left.enumerate().min_by(|a, b| a.1.total_cmp(&b.1))?
+            }
+        };
+        Some((self.layout.key(&self.model, row).to_string(), left))
     }
 
     /// Force and torque that make each driven body move as prescribed, by Newton and Euler from

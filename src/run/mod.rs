@@ -47,6 +47,8 @@ const DRIFT: f64 = 5e-12;
 const DRIFT_ROUNDINGS: f64 = 64.0;
 /// Steps between two looks at the drift.
 const DRIFT_EVERY: u64 = 50;
+/// Constraints that others leave less of than this make steps as small as they are.
+const SINGULAR: f64 = 1e-10;
 /// By how much, in units of the tolerance, an event function of order one may be beyond its zero
 /// and yet not have fired: what projections and errors of the slip over v1 come to, and more.
 const MISSED: f64 = 1e8;
@@ -63,6 +65,22 @@ pub enum Error<E: std::error::Error + 'static, R: std::error::Error + 'static> {
         time: f64,
         /// Number of the segment between two events, from 1.
         segment: u64,
+        /// What the engine says.
+        source: E,
+    },
+    /// The engine gave up where the mechanism stands in a singular position, or nearly so.
+    #[error(
+        "the mechanism has come to a singular position (a dead centre) at t = {time:e} s: the \
+         constraints of {joint} depend on the others but for {left:.1e} of them, and how it goes on \
+         is not clear"
+    )]
+    Singular {
+        /// Where the run stood (s).
+        time: f64,
+        /// Key of the joint.
+        joint: String,
+        /// What the others leave of what the joint holds: a share of the squares.
+        left: f64,
         /// What the engine says.
         source: E,
     },
@@ -280,7 +298,9 @@ where
     let _ = watch(&run.progress);
     match going {
         // whatever stood in the way then was the request
-        Err(Error::Engine { .. } | Error::System { .. }) if halt::is_asked() => {
+        Err(Error::Engine { .. } | Error::Singular { .. } | Error::System { .. })
+            if halt::is_asked() =>
+        {
             Err(Error::Interrupted { time: run.engine.now().time.to_f64() })
         }
         going => going.and(closing).map(|()| Reached::End(run.counts)),
@@ -441,8 +461,13 @@ where
         }
     }
 
-    fn stopped(&self, source: E::Error) -> Error<E::Error, R::Error> {
-        Error::Engine { time: self.engine.now().time.to_f64(), segment: self.segment, source }
+    fn stopped(&mut self, source: E::Error) -> Error<E::Error, R::Error> {
+        let now = self.engine.now().clone();
+        let time = now.time.to_f64();
+        match self.engine.system().weakest_joint(now.state()) {
+            Some((joint, left)) if left < SINGULAR => Error::Singular { time, joint, left, source },
+            _ => Error::Engine { time, segment: self.segment, source },
+        }
     }
 
     fn restart(&mut self, at: &Snapshot<S>) -> Outcome<(), S, E, R> {

@@ -321,7 +321,7 @@ impl<Y: Dae> Solver<Y> {
 }
 
 /// Systems of more unknowns are solved by sparse factors.
-const DENSE_UNKNOWNS: usize = 60;
+const DENSE_UNKNOWNS: usize = 48;
 
 /// A pointer that SUNDIALS returned, if it could make what it points to.
 fn made<T>(pointer: *mut T, what: &'static str) -> Result<*mut T, Error> {
