@@ -1,1 +1,0 @@
-/dev/fd/3: line 79: ../fp3: No such file or directory
