@@ -68,7 +68,7 @@ pub enum Error<E: std::error::Error + 'static, R: std::error::Error + 'static> {
         /// What the engine says.
         source: E,
     },
-    /// The engine gave up where the mechanism stands in a singular position, or nearly so.
+    /// The mechanism stands in a singular position, or nearly so.
     #[error(
         "the mechanism has come to a singular position (a dead centre) at t = {time:e} s: the \
          constraints of {joint} depend on the others but for {left:.1e} of them, and how it goes on \
@@ -81,8 +81,8 @@ pub enum Error<E: std::error::Error + 'static, R: std::error::Error + 'static> {
         joint: String,
         /// What the others leave of what the joint holds: a share of the squares.
         left: f64,
-        /// What the engine says.
-        source: E,
+        /// What the engine says, if it gave up by itself.
+        source: Option<E>,
     },
     /// The mechanism could not be evaluated.
     #[error("the mechanism could not be evaluated at t = {time:e} s")]
@@ -198,6 +198,8 @@ struct Run<'a, S: Scalar, E: Engine<S>, R> {
     ends: [End<S>; 2],
     progress: Progress,
     segment: u64,
+    /// Whether the mechanism stood in a singular position when it was last looked at.
+    singular: bool,
     counts: RulingCounts,
 }
 
@@ -278,6 +280,7 @@ where
         ends: End::both(&start),
         progress: Progress::default(),
         segment: 1,
+        singular: false,
         counts: RulingCounts::default(),
     };
     let begun = match stretch.from {
@@ -465,8 +468,24 @@ where
         let now = self.engine.now().clone();
         let time = now.time.to_f64();
         match self.engine.system().weakest_joint(now.state()) {
-            Some((joint, left)) if left < SINGULAR => Error::Singular { time, joint, left, source },
+            Some((joint, left)) if left < SINGULAR => {
+                Error::Singular { time, joint, left, source: Some(source) }
+            }
             _ => Error::Engine { time, segment: self.segment, source },
+        }
+    }
+
+    /// Refuses to crawl on in a singular position; one that is passed takes few steps.
+    fn check_singular(&mut self) -> Outcome<(), S, E, R> {
+        let now = self.engine.now().clone();
+        let weakest = self.engine.system().weakest_joint(now.state());
+        let Some((joint, left)) = weakest.filter(|(_, left)| *left < SINGULAR) else {
+            self.singular = false;
+            return Ok(());
+        };
+        match std::mem::replace(&mut self.singular, true) {
+            true => Err(Error::Singular { time: now.time.to_f64(), joint, left, source: None }),
+            false => Ok(()),
         }
     }
 
@@ -503,6 +522,7 @@ where
         if self.engine.system().multipliers() == 0 {
             return Ok(());
         }
+        self.check_singular()?;
         self.scratch.clone_from(self.engine.now());
         let drift = self.project()?;
         let (system, q) = (self.engine.system(), &self.scratch.q);

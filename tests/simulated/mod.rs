@@ -85,15 +85,18 @@ pub fn simulate(case: &Case) -> Kept {
     kept
 }
 
+/// An error and its causes.
+pub fn words(error: &dyn Error) -> String {
+    let mut words = error.to_string();
+    let mut cause = error.source();
+    while let Some(error) = cause {
+        words = format!("{words}: {error}");
+        cause = error.source();
+    }
+    words
+}
+
 /// What there is, or a panic with the error and its causes.
 pub fn told<T, E: Error>(result: Result<T, E>) -> T {
-    result.unwrap_or_else(|error| {
-        let mut words = error.to_string();
-        let mut cause = error.source();
-        while let Some(error) = cause {
-            words = format!("{words}: {error}");
-            cause = error.source();
-        }
-        panic!("{words}")
-    })
+    result.unwrap_or_else(|error| panic!("{}", words(&error)))
 }
