@@ -3,7 +3,8 @@
 use super::{CaseArguments, Failure};
 use crate::advice::{self, Note, Touch, Turn};
 use crate::case::{AbsoluteTolerance, Case, EngineName, NormName, Precision, SolverPlan};
-use crate::contact;
+use crate::contact::elastic::ElasticLaw;
+use crate::contact::{self, depth_under};
 use crate::dae::System;
 use crate::joint::REVOLUTE;
 use crate::mechanism::{Mechanism, Observation};
@@ -25,6 +26,9 @@ pub struct Arguments {
     #[arg(long)]
     json: bool,
 }
+
+/// Force (N) that an elastic law without a stiffness of its own is told by.
+const PRESSING: f64 = 1000.0;
 
 /// Says what a case describes; writes nothing.
 pub(super) fn check(arguments: &Arguments) -> Result<(), Failure> {
@@ -206,12 +210,14 @@ impl Checked<'_> {
     fn clearance_json(&self, k: usize) -> Value {
         let clearance = &self.simulation.mechanism().model().clearances()[k];
         let touch = self.touches.iter().find(|touch| touch.clearance == k);
+        let power = clearance.normal.elastic().power();
         json!({
             "radial": clearance.radial,
             "bearing_radius": clearance.bearing_radius,
             "journal_radius": clearance.journal_radius,
-            "stiffness": clearance.normal.stiffness(),
-            "exponent": clearance.normal.exponent(),
+            "elastic": elastic_word(&self.case.description, self.simulation.mechanism(), k),
+            "stiffness": power.map(|(stiffness, _)| stiffness),
+            "exponent": power.map(|(_, exponent)| exponent),
             "damping_weight": clearance.normal.damping_weight(),
             "rebound": contact::rebound(clearance.normal.damping_weight()),
             "nominal_restitution": nominal_restitution(&self.case.description, self.simulation.mechanism(), k),
@@ -397,6 +403,16 @@ fn nominal_restitution(
     description.clearance(name)?.normal.nominal_restitution()
 }
 
+/// The word of the elastic law of a clearance.
+fn elastic_word(
+    description: &Description,
+    mechanism: &Mechanism<f64>,
+    k: usize,
+) -> Option<&'static str> {
+    let name = &mechanism.model().names().clearances[k];
+    Some(description.clearance(name)?.normal.elastic.kind().word)
+}
+
 /// What a clearance is, without where it is.
 fn law_lines(description: &Description, mechanism: &Mechanism<f64>, k: usize) -> String {
     let mut lines = String::new();
@@ -420,13 +436,16 @@ fn write_law(
         tidy(clearance.journal_radius)
     )?;
     let law = &clearance.normal;
-    writeln!(
-        f,
-        "    K = {:.9e} N/m^{}, damping weight a = {}",
-        law.stiffness(),
-        tidy(law.exponent()),
-        tidy(law.damping_weight())
-    )?;
+    match law.elastic().power() {
+        Some((k, n)) => write!(f, "    K = {k:.9e} N/m^{}", tidy(n))?,
+        None => write!(
+            f,
+            "    elastic law {}: {PRESSING} N press it {:.4e} m deep",
+            elastic_word(description, mechanism, k).unwrap_or_default(),
+            depth_under(law.elastic(), PRESSING)
+        )?,
+    }
+    writeln!(f, ", damping weight a = {}", tidy(law.damping_weight()))?;
     let rebound = contact::rebound(law.damping_weight());
     let asked = match nominal_restitution(description, mechanism, k) {
         Some(nominal) => format!(", as asked for: a nominal restitution of {nominal:.6}"),
@@ -443,8 +462,11 @@ fn write_law(
     )?;
     writeln!(
         f,
-        "    a run stops where the journal is deeper than {:e} m, {} of its radius",
-        tidy(clearance.maximum_penetration * clearance.journal_radius),
-        clearance.maximum_penetration
+        "    a run stops where the journal is deeper than {:e} m, {}",
+        tidy(clearance.believed_depth()),
+        match clearance.normal.elastic().deepest() > clearance.believed_depth() {
+            true => format!("{} of its radius", clearance.maximum_penetration),
+            false => clearance.believed_because(),
+        }
     )
 }

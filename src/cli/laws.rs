@@ -1,7 +1,8 @@
 //! `freeplay laws [NAME]`
 
 use super::Failure;
-use crate::contact::{Damping, Impact};
+use crate::contact::elastic::{Elastic, Power};
+use crate::contact::{Damping, Impact, NormalLaw};
 use crate::friction;
 use crate::parameter::{Kind, Otherwise};
 use crate::post::table;
@@ -83,11 +84,24 @@ pub(super) fn laws(arguments: &Arguments) -> Result<(), Failure> {
     }
 }
 
+/// An impact with a damping weight, over what the elastic one with the same stiffness, mass and speed
+/// does.
+fn relative(damping_weight: f64) -> Impact {
+    let law = |a: f64| NormalLaw::new(Elastic::Power(Power::with(1.0, EXPONENT)), a);
+    let [impact, elastic] = [damping_weight, 0.0].map(|a| Impact::of(&law(a), 1.0, 1.0));
+    Impact {
+        rebound: impact.rebound,
+        depth: impact.depth / elastic.depth,
+        force: impact.force / elastic.force,
+        duration: impact.duration / elastic.duration,
+    }
+}
+
 fn told(law: Damping, restitutions: &[f64]) -> Value {
     let about = law.about();
     let impact = |e: &f64| {
         let weight: f64 = law.weight(*e);
-        let Impact { rebound, depth, duration } = Impact::new(weight, EXPONENT);
+        let Impact { rebound, depth, duration, .. } = relative(weight);
         json!({
             "nominal": e,
             "damping_weight": weight,
@@ -166,7 +180,7 @@ fn in_full(law: Damping, restitutions: &[f64]) -> String {
     let heads = ["e", "a", "rebound", "depth", "duration", "pulls where the rate is below"];
     let row = |e: &f64| {
         let weight: f64 = law.weight(*e);
-        let impact = Impact::new(weight, EXPONENT);
+        let impact = relative(weight);
         let pulls = match weight > 0.0 {
             true => format!("{:.4} δ̇⁽⁻⁾", -1.0 / weight),
             false => "never".into(),

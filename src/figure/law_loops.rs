@@ -9,7 +9,8 @@ use super::sheet::{Height, SINGLE_COLUMN, Sheet};
 use super::svg::Stroke;
 use super::text::Text;
 use super::{Figure, Figures, Options};
-use crate::contact::{Damping, force_loop};
+use crate::contact::elastic::{Elastic, Power};
+use crate::contact::{Damping, Impact, NormalLaw, force_loop};
 
 /// Hertz's exponent.
 const EXPONENT: f64 = 1.5;
@@ -20,10 +21,9 @@ const MOMENTS: usize = 401;
 /// own, beside the elastic one.
 pub fn draw_laws(laws: &[Damping], restitution: f64, options: &Options) -> Vec<Figure> {
     let mut figures = Figures { options, drawn: Vec::new() };
-    let loops: Vec<(Damping, Vec<[f64; 2]>)> = (laws.iter())
-        .map(|law| (*law, force_loop(law.weight(restitution), EXPONENT, MOMENTS)))
-        .collect();
-    let elastic = force_loop(0.0, EXPONENT, MOMENTS);
+    let loops: Vec<(Damping, Vec<[f64; 2]>)> =
+        (laws.iter()).map(|law| (*law, relative_loop(law.weight(restitution)))).collect();
+    let elastic = relative_loop(0.0);
     let points = || loops.iter().flat_map(|(_, points)| points).chain(&elastic);
     let axis = |title: Text, index: usize| Axis {
         title,
@@ -52,6 +52,14 @@ pub fn draw_laws(laws: &[Damping], restitution: f64, options: &Options) -> Vec<F
     let title = "Normal force over penetration in one impact, by several laws";
     figures.add("law-loops", None, title, vec![sheet]);
     figures.drawn
+}
+
+/// Penetration and force in one impact, over the largest of the elastic one.
+fn relative_loop(damping_weight: f64) -> Vec<[f64; 2]> {
+    let law = |a: f64| NormalLaw::new(Elastic::Power(Power::with(1.0, EXPONENT)), a);
+    let elastic = Impact::of(&law(0.0), 1.0, 1.0);
+    let points = force_loop(&law(damping_weight), 1.0, 1.0, MOMENTS);
+    points.iter().map(|[depth, force]| [depth / elastic.depth, force / elastic.force]).collect()
 }
 
 fn panel(

@@ -158,8 +158,11 @@ const COEFFICIENT: Key = Key {
 };
 
 /// Friction of rest is no less than that of sliding.
-fn rest_holds(values: &Values) -> Option<(&'static str, String)> {
-    let (sliding, rest) = (values.decimal("coefficient")?, values.decimal("static")?);
-    (rest.to_f64() < sliding.to_f64())
-        .then(|| ("static", format!("must be at least the coefficient, {sliding}, is {rest}")))
+fn rest_holds(values: &Values) -> Vec<(&'static str, String)> {
+    let both = values.decimal("coefficient").zip(values.decimal("static"));
+    let wrong = both.filter(|(sliding, rest)| rest.to_f64() < sliding.to_f64());
+    let complaint = |(sliding, rest)| {
+        ("static", format!("must be at least the coefficient, {sliding}, is {rest}"))
+    };
+    wrong.map(complaint).into_iter().collect()
 }

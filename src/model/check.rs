@@ -4,9 +4,10 @@
 use super::normal_law;
 use super::{
     BodyDescription, ClearanceDescription, Complaint, Complaints, Description, DriveDescription,
-    JointDescription, KeyPath, LoadDescription, NamedPoint, NormalDescription, OfMaterials,
-    StartDescription, StiffnessDescription, shortened,
+    JointDescription, KeyPath, LoadDescription, NamedPoint, NormalDescription, StartDescription,
+    shortened,
 };
+use crate::contact::elastic::ElasticLaw;
 use crate::joint::{PRISMATIC, REVOLUTE};
 use crate::parameter::{Key, Takes, Value, Values};
 use crate::scalar::Decimal;
@@ -157,10 +158,21 @@ fn check_part(
                     check_goes(complaints, &key, course, "velocity", "speed_rpm");
                 }
             }
+            (Takes::NumberOr(range, _), Value::Number(number)) => {
+                complaints.require(key, number, unit, range.words(), |x| range.holds(x));
+            }
+            (Takes::OfMaterials(range), Value::Materials([bearing, journal])) => {
+                // what is the same for both is told once
+                let others = (journal != bearing).then_some(journal);
+                for number in std::iter::once(bearing).chain(others) {
+                    let key = key.clone();
+                    complaints.require(key, number, unit, range.words(), |x| range.holds(x));
+                }
+            }
             _ => {}
         }
     }
-    if let Some((key, message)) = part.kind().also.and_then(|also| also(part)) {
+    for (key, message) in part.kind().also.map_or_else(Vec::new, |also| also(part)) {
         complaints.add(path.key(key), message);
     }
 }
@@ -260,48 +272,44 @@ fn check_clearance(
     let holds = |share: f64| share > 0.0 && share <= 1.0;
     complaints.require(key.key("maximum_penetration"), share, "", range, holds);
     let before = complaints.len();
-    check_normal(complaints, &key.key("normal"), &clearance.normal);
+    check_normal(complaints, description, &key.key("normal"), &clearance.normal);
     let is_inside = bearing_right && radial_right && radial.to_f64() < bearing.to_f64();
     if is_inside && complaints.len() == before {
-        check_stiffness(complaints, key.key("normal").key("stiffness"), clearance);
+        check_elastic(complaints, &key.key("normal"), clearance);
     }
     if let Some(friction) = &clearance.friction {
         check_part(complaints, description, &key.key("friction"), friction);
     }
 }
 
-/// Radii and materials in range may yet come to a stiffness that is no number.
-fn check_stiffness(complaints: &mut Complaints, key: KeyPath, clearance: &ClearanceDescription) {
+/// Radii and materials in range may yet be none that the law is for, or come to a stiffness that is no
+/// number.
+fn check_elastic(complaints: &mut Complaints, key: &KeyPath, clearance: &ClearanceDescription) {
     let (bearing, radial) = (clearance.bearing_radius.to_f64(), clearance.radial.to_f64());
-    let stiffness = normal_law::<f64>(&clearance.normal, bearing, bearing - radial).stiffness();
-    if !(stiffness > 0.0 && stiffness.is_finite()) {
+    let Some(law) = normal_law::<f64>(&clearance.normal, bearing, bearing - radial) else { return };
+    if let Some(objection) = law.elastic().objection() {
+        return complaints.add(key.key("elastic"), objection);
+    }
+    let (what, number) = match law.elastic().power() {
+        Some((stiffness, _)) => ("stiffness", stiffness),
+        None => ("elastic", law.elastic().force(1e-3 * radial.min(law.elastic().deepest())).1),
+    };
+    if !(number > 0.0 && number.is_finite()) {
+        let unit = if what == "stiffness" { "N/mⁿ" } else { "N/m" };
         let from = "with these radii and materials";
-        complaints.add(key, format!("comes to {stiffness:e} (N/mⁿ) {from}: it must be positive"));
+        let message = format!("comes to {number:e} ({unit}) {from}: it must be positive");
+        complaints.add(key.key(what), message);
     }
 }
 
-fn check_normal(complaints: &mut Complaints, key: &KeyPath, normal: &NormalDescription) {
-    complaints.require(key.key("exponent"), &normal.exponent, "", "at least 1", |n| n >= 1.0);
+fn check_normal(
+    complaints: &mut Complaints,
+    description: &Description,
+    key: &KeyPath,
+    normal: &NormalDescription,
+) {
     check_restitution(complaints, key, normal);
-    if let StiffnessDescription::Number(stiffness) = &normal.stiffness {
-        complaints.require_positive(key.key("stiffness"), stiffness, "N/mⁿ");
-    }
-    check_material(complaints, key.key("young"), &normal.stiffness, &normal.young, "Pa");
-    for young in of_each(&normal.young) {
-        complaints.require_positive(key.key("young"), young, "Pa");
-    }
-    check_material(complaints, key.key("poisson"), &normal.stiffness, &normal.poisson, "");
-    for poisson in of_each(&normal.poisson) {
-        let range = "greater than -1 and at most 0.5";
-        complaints.require(key.key("poisson"), poisson, "", range, |nu| nu > -1.0 && nu <= 0.5);
-    }
-}
-
-/// A constant's values, bearing first; what is the same for both comes once.
-fn of_each(constant: &Option<OfMaterials>) -> impl Iterator<Item = &Decimal> {
-    constant.iter().flat_map(|OfMaterials { bearing, journal }| {
-        std::iter::once(bearing).chain((journal != bearing).then_some(journal))
-    })
+    check_part(complaints, description, key, &normal.elastic);
 }
 
 /// A law that dissipates needs a restitution, nominal or achieved, one that does not takes none.
@@ -333,29 +341,6 @@ fn check_restitution(complaints: &mut Complaints, key: &KeyPath, normal: &Normal
                 complaints.add(key, format!("is {achieved}, but {at}; `freeplay laws` has others"));
             }
         }
-        _ => {}
-    }
-}
-
-/// The Hertz stiffnesses need each material constant, a stiffness given as a number takes none.
-fn check_material(
-    complaints: &mut Complaints,
-    key: KeyPath,
-    stiffness: &StiffnessDescription,
-    constant: &Option<OfMaterials>,
-    unit: &str,
-) {
-    let by_material = match stiffness {
-        StiffnessDescription::HertzPrinted => Some("hertz-printed"),
-        StiffnessDescription::HertzInternal => Some("hertz-internal"),
-        StiffnessDescription::Number(_) => None,
-    };
-    match (by_material, constant) {
-        (Some(name), None) => {
-            let unit = super::in_brackets(unit);
-            complaints.add(key, format!("is missing{unit}; stiffness {name:?} needs it"));
-        }
-        (None, Some(_)) => complaints.add(key, "is not used where stiffness is a number"),
         _ => {}
     }
 }

@@ -103,14 +103,8 @@ pub struct NormalDescription {
     pub restitution: Option<Decimal>,
     /// The restitution that one impact by itself is to have, in place of a nominal one.
     pub achieved_restitution: Option<Decimal>,
-    /// Generalized stiffness.
-    pub stiffness: StiffnessDescription,
-    /// Young's modulus E (Pa), for the Hertz stiffnesses.
-    pub young: Option<OfMaterials>,
-    /// Poisson's ratio ν.
-    pub poisson: Option<OfMaterials>,
-    /// Exponent n of the penetration.
-    pub exponent: Decimal,
+    /// The law of its elastic part, with its keys.
+    pub elastic: Values,
 }
 
 impl Description {
@@ -125,26 +119,6 @@ impl NormalDescription {
     pub fn nominal_restitution(&self) -> Option<f64> {
         self.law.nominal(self.achieved_restitution.as_ref()?.to_f64())
     }
-}
-
-/// A constant of the two materials that touch; written as one number where they are the same.
-#[derive(Debug, Clone, PartialEq)]
-pub struct OfMaterials {
-    /// Of the bearing's.
-    pub bearing: Decimal,
-    /// Of the journal's.
-    pub journal: Decimal,
-}
-
-/// Where the stiffness K of a contact comes from.
-#[derive(Debug, Clone, PartialEq)]
-pub enum StiffnessDescription {
-    /// `"hertz-printed"`: the paper's eq. 5, with R_b R_j / (R_b + R_j).
-    HertzPrinted,
-    /// `"hertz-internal"`: with R_b R_j / (R_b − R_j).
-    HertzInternal,
-    /// K itself (N/mⁿ).
-    Number(Decimal),
 }
 
 /// A drive.
