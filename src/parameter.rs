@@ -79,6 +79,8 @@ pub enum Range {
     AtLeastOne,
     /// What Poisson's ratio may be.
     PoissonRatio,
+    /// What a restitution may be.
+    Restitution,
 }
 
 impl Range {
@@ -92,6 +94,7 @@ impl Range {
                 Range::NotZero => x != 0.0,
                 Range::AtLeastOne => x >= 1.0,
                 Range::PoissonRatio => x > -1.0 && x <= 0.5,
+                Range::Restitution => x > 0.0 && x <= 1.0,
             }
     }
 
@@ -104,6 +107,7 @@ impl Range {
             Range::NotZero => "other than zero",
             Range::AtLeastOne => "at least 1",
             Range::PoissonRatio => "greater than -1 and at most 0.5",
+            Range::Restitution => "greater than 0 and at most 1",
         }
     }
 }

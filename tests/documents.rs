@@ -110,9 +110,11 @@ fn laws_md_tells_every_law_and_what_it_rebounds_at() {
         }
     }
     let sources = read("docs/bibliography.md");
-    for (key, kinds) in
-        [("elastic", freeplay::contact::elastic::KINDS), ("law", freeplay::friction::KINDS)]
-    {
+    for (key, kinds) in [
+        ("elastic", freeplay::contact::elastic::KINDS),
+        ("law", freeplay::contact::viscous::KINDS),
+        ("law", freeplay::friction::KINDS),
+    ] {
         for kind in kinds {
             assert!(text.contains(&format!("| `{}` |", kind.word)), "{}", kind.word);
             let cited = format!("| `{key} = \"{}\"` |", kind.word);
@@ -390,6 +392,7 @@ fn the_example_of_every_kind_has_its_keys() {
         freeplay::load::KINDS,
         freeplay::course::KINDS,
         freeplay::contact::elastic::KINDS,
+        freeplay::contact::viscous::KINDS,
         freeplay::friction::KINDS,
     ];
     for kind in families.concat() {

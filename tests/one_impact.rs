@@ -131,6 +131,17 @@ fn assert_near(what: &str, found: f64, exact: f64) {
 }
 
 #[test]
+fn every_law_of_the_menu_is_here() {
+    for (word, _) in freeplay::contact::Damping::ALL {
+        assert!(LAWS.iter().any(|law| law.0 == *word), "{word}");
+    }
+    let viscous = viscous_laws();
+    for kind in freeplay::contact::viscous::KINDS {
+        assert!(viscous.iter().any(|law| law.0 == kind.word), "{}", kind.word);
+    }
+}
+
+#[test]
 fn each_rebound_has_the_ratio_of_its_law_whatever_the_speed_and_the_exponent() {
     for law in &LAWS {
         let (name, _, a, known) = *law;
@@ -361,4 +372,87 @@ fn a_journal_deeper_than_its_elastic_law_goes_stops_the_run() {
     // 4 c/e²
     let told = "beyond 5.4134e-4 m, where the formula of its elastic part ends";
     assert!(words.contains(told), "{words}");
+}
+
+/// ζ that an impact with a spring and a damper rebounds at e with, where it ends at δ = 0.
+fn damping_ratio(e: f64) -> f64 {
+    -e.ln() / (e.ln().powi(2) + std::f64::consts::PI.powi(2)).sqrt()
+}
+
+/// What it rebounds at where the contact ends with its force: Schwager and Pöschel, 2007.
+fn rebound_without_tension(ratio: f64) -> f64 {
+    let left = (1.0 - ratio * ratio).sqrt();
+    let turned = std::f64::consts::PI - (2.0 * ratio * left).atan2(1.0 - 2.0 * ratio * ratio);
+    (-ratio / left * turned).exp()
+}
+
+/// A law of viscous damping: its table, and what its impacts rebound at with tension and without,
+/// where that is known.
+fn viscous_laws() -> Vec<(&'static str, String, Option<[f64; 2]>)> {
+    let known = |e: f64| Some([e, rebound_without_tension(damping_ratio(e))]);
+    let mut laws = Vec::new();
+    for e in [0.9, 0.5, 0.3] {
+        let stiffness = 1e7;
+        let damping = 2.0 * damping_ratio(e) * f64::sqrt(stiffness * MASS);
+        let table = format!("damping = {damping:?}, stiffness = {stiffness:?}, exponent = 1.0");
+        laws.push(("kelvin-voigt", table, known(e)));
+        let table = format!("restitution = {e:?}, mass = {MASS:?}, stiffness = {STIFFNESS:?}");
+        laws.push(("tsuji", table, known(e)));
+    }
+    for damping in [1e3, 1e5, 5e5] {
+        let table = format!("damping = {damping:?}, stiffness = {STIFFNESS:?}");
+        laws.push(("kuwabara-kono", table, None));
+    }
+    laws
+}
+
+#[test]
+fn viscous_laws_rebound_and_give_way_as_their_closed_forms_say_on_both_engines() {
+    // the values that a review of these laws would have
+    for (e, told) in [(0.9, 0.9020), (0.5, 0.5503), (0.3, 0.3971)] {
+        assert!((rebound_without_tension(damping_ratio(e)) - told).abs() < 1e-4);
+    }
+    for (word, table, known) in viscous_laws() {
+        let normal = format!("law = \"{word}\", {table}");
+        for engine in ENGINES {
+            let case = case_of(&flight(&normal, 1.0), &[engine]);
+            let law = Model::<f64>::new(&case.description).unwrap().clearances()[0].normal;
+            let kept = simulate(&case);
+            let what = format!("{word}, {table}, {engine}");
+            let ended: Vec<&Contact> = ended(&kept).collect();
+            assert!(ended.len() >= 2, "{what}");
+            for (contact, next) in ended.iter().zip(&kept.contacts[1..]) {
+                let impact = Impact::of(&law, MASS, contact.impact_rate);
+                let ratio = next.impact_rate / contact.impact_rate;
+                assert_near(&format!("{what}, told rebound"), ratio, impact.rebound);
+                if let Some([rebound, _]) = known {
+                    assert_near(&format!("{what}, rebound"), ratio, rebound);
+                }
+                assert_near(&format!("{what}, depth"), contact.peak_penetration, impact.depth);
+                assert_near(&format!("{what}, force"), contact.peak_force, impact.force);
+                let duration = contact.end - contact.begin;
+                assert_near(&format!("{what}, duration"), duration, impact.duration);
+            }
+            let residual = kept.largest(|sample| sample.energy.residual);
+            assert!(residual <= 1e3 * TOLERANCE * 0.5 * MASS, "{what}: {residual:e} J");
+        }
+    }
+}
+
+#[test]
+fn a_viscous_law_without_tension_lets_go_where_its_force_ends() {
+    for (word, table, known) in viscous_laws() {
+        let Some([_, rebound]) = known else { continue };
+        let normal = format!("law = \"{word}\", {table}");
+        let text =
+            flight(&normal, 1.0).replace("radial = 0.001\n", "radial = 0.001\ntension = \"cut\"\n");
+        for engine in ENGINES {
+            let kept = simulate(&case_of(&text, &[engine]));
+            let rates: Vec<f64> = kept.contacts.iter().map(|contact| contact.impact_rate).collect();
+            assert!(rates.len() >= 3, "{word}: {rates:?}");
+            for pair in rates.windows(2) {
+                assert_near(&format!("{word}, {table}, {engine}"), pair[1] / pair[0], rebound);
+            }
+        }
+    }
 }

@@ -25,6 +25,8 @@ pub struct Touch {
     pub duration: f64,
     /// How deep it goes (m).
     pub depth: f64,
+    /// What it rebounds at, over its speed.
+    pub rebound: f64,
     /// The largest force (N) that the ideal mechanism has there, and how deep it presses (m);
     /// `None` where that is not known.
     pub pressed: Option<(f64, f64)>,
@@ -50,6 +52,7 @@ fn touch(mechanism: &Mechanism<f64>, turn: &Turn, k: usize) -> Option<Touch> {
         speed,
         duration,
         depth,
+        rebound: Impact::of(&clearance.normal, mass, speed).rebound,
         pressed: force.map(|force| (force, depth_under(elastic, force))),
     })
 }

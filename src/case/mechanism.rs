@@ -3,12 +3,12 @@
 //! Joints, courses of drives, loads, elastic and friction laws say themselves which keys they take.
 
 use super::table_reader::TableReader;
-use crate::contact::{Damping, elastic};
+use crate::contact::{Damping, elastic, viscous};
 use crate::model::{
-    BodyDescription, ClearanceDescription, Description, DriveDescription, JointDescription,
-    LoadDescription, NamedPoint, NormalDescription, StartDescription, Tension,
+    BodyDescription, ClearanceDescription, DampingDescription, Description, DriveDescription,
+    JointDescription, LoadDescription, NamedPoint, NormalDescription, StartDescription, Tension,
 };
-use crate::parameter::Values;
+use crate::parameter::{Kind, Values};
 use crate::{course, friction, joint, load};
 
 const TENSIONS: [(&str, Tension); 2] = [("keep", Tension::Keep), ("cut", Tension::Cut)];
@@ -61,16 +61,36 @@ fn clearance(keys: &mut TableReader) -> ClearanceDescription {
     }
 }
 
+/// What the word of a normal force stands for.
+#[derive(Debug, Clone, Copy)]
+enum Law {
+    Weight(Damping),
+    Viscous(&'static Kind),
+}
+
 fn normal(keys: &mut TableReader) -> NormalDescription {
-    let law = keys.choice("law", Damping::ALL, None);
-    let restitution = keys.optional("restitution", "");
-    let achieved_restitution = keys.optional("achieved_restitution", "");
+    let weights = Damping::ALL.iter().map(|(word, law)| (*word, Law::Weight(*law)));
+    let viscous = viscous::KINDS.iter().map(|kind| (kind.word, Law::Viscous(kind)));
+    let laws: Vec<(&str, Law)> = weights.chain(viscous).collect();
+    let chosen = keys.choice("law", &laws, None);
+    let (mut restitution, mut achieved_restitution) = (None, None);
+    let law = match chosen {
+        Some(Law::Viscous(kind)) => Some(DampingDescription::Viscous(keys.values(kind))),
+        chosen => {
+            restitution = keys.optional("restitution", "");
+            achieved_restitution = keys.optional("achieved_restitution", "");
+            match chosen {
+                Some(Law::Weight(damping)) => Some(DampingDescription::Weight(damping)),
+                _ => None,
+            }
+        }
+    };
     let elastic = keys.part("elastic", elastic::KINDS, Some(elastic::POWER.word));
     if law.is_none() || elastic.is_none() {
         keys.leave_unchecked(); // which other keys are wanted hangs on these two
     }
     NormalDescription {
-        law: law.unwrap_or(Damping::Hertz),
+        law: law.unwrap_or(DampingDescription::Weight(Damping::Hertz)),
         restitution,
         achieved_restitution,
         elastic: elastic.unwrap_or_else(|| Values::new(elastic::POWER)),

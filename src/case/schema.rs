@@ -1,7 +1,7 @@
 //! The JSON Schema of case files, and the same in tables. Joints, drives, loads and courses come from
 //! what their kinds say of themselves; the other keys stand in `schema.json`.
 
-use crate::contact::{Damping, elastic};
+use crate::contact::{Damping, elastic, viscous};
 use crate::parameter::{Key, Kind, Otherwise, Range, Takes};
 use crate::{course, friction, joint, load};
 use serde_json::{Map, Value, json};
@@ -26,6 +26,23 @@ pub fn schema() -> Value {
     ];
     for (name, about, alternatives) in kinds {
         schema["$defs"][name] = json!({ "description": about, "oneOf": alternatives });
+    }
+    let viscous = one_of("law", viscous::KINDS, |_| Map::new());
+    if let Some(alternatives) = schema["$defs"]["normal"]["oneOf"].as_array_mut() {
+        // they go with the power law alone
+        let power = alternatives[0]["properties"].clone();
+        alternatives.extend(viscous.into_iter().map(|mut law| {
+            for (key, value) in power.as_object().into_iter().flatten() {
+                let other = ["law", "restitution", "achieved_restitution"].contains(&key.as_str());
+                if !other {
+                    law["properties"][key] = value.clone();
+                }
+            }
+            if let Some(required) = law["required"].as_array_mut() {
+                required.push(json!("stiffness"));
+            }
+            law
+        }));
     }
     default_kind(&mut schema["$defs"]["drive"], "kind", "speed");
     default_kind(&mut schema["$defs"]["normal"], "elastic", elastic::POWER.word);
@@ -140,6 +157,9 @@ fn number(range: Range) -> Value {
         Range::NotNegative => json!({ "type": "number", "minimum": 0 }),
         Range::NotZero => json!({ "type": "number", "not": { "const": 0 } }),
         Range::AtLeastOne => json!({ "type": "number", "minimum": 1 }),
+        Range::Restitution => {
+            json!({ "type": "number", "exclusiveMinimum": 0, "maximum": 1 })
+        }
         Range::PoissonRatio => {
             json!({ "type": "number", "exclusiveMinimum": -1, "maximum": 0.5 })
         }
@@ -161,8 +181,9 @@ pub fn tables() -> String {
     table(&mut text, "Bodies: `[bodies.NAME]`", "", &defs["body"]);
     kinds(&mut text, "Joints: `[joints.NAME]`", &defs["joint"], joint::KINDS);
     table(&mut text, "Clearance: `[joints.NAME.clearance]`", "", &defs["clearance"]);
-    let normal = "Normal force: `normal` of a clearance, by its elastic law";
-    kinds(&mut text, normal, &defs["normal"], elastic::KINDS);
+    let normal =
+        "Normal force: `normal` of a clearance, by its elastic law, or by a law of its own";
+    kinds(&mut text, normal, &defs["normal"], &[elastic::KINDS, viscous::KINDS].concat());
     kinds(&mut text, "Friction: `friction` of a clearance", &defs["friction"], friction::KINDS);
     kinds(&mut text, "Drives: `[drives.NAME]`", &defs["drive"], course::KINDS);
     kinds(&mut text, "Loads: `[loads.NAME]`", &defs["load"], load::KINDS);

@@ -365,14 +365,18 @@ impl<'d> TableReader<'d, '_> {
         let words: Vec<(&str, &Kind)> = kinds.iter().map(|kind| (kind.word, *kind)).collect();
         let chosen = self.choice(key, &words, default);
         self.any_key |= chosen.is_none(); // which keys an unknown kind takes is not known
-        let kind = chosen?;
+        chosen.map(|kind| self.values(kind))
+    }
+
+    /// The values of the keys of a kind.
+    pub fn values(&mut self, kind: &'static Kind) -> Values {
         let mut values = Values::new(kind);
         for key in kind.keys {
             if let Some(value) = self.value(key) {
                 values = values.with(key.name, value);
             }
         }
-        Some(values)
+        values
     }
 
     /// The value of a key of a kind; what cannot be read has a placeholder.

@@ -3,6 +3,7 @@
 use super::{CaseArguments, Failure};
 use crate::advice::{self, Note, Touch, Turn};
 use crate::case::{AbsoluteTolerance, Case, EngineName, NormName, Precision, SolverPlan};
+use crate::clearance::Clearance;
 use crate::contact::elastic::ElasticLaw;
 use crate::contact::{self, depth_under};
 use crate::dae::System;
@@ -126,13 +127,21 @@ impl Checked<'_> {
         let name = &model.names().clearances[k];
         writeln!(f, "  clearance    {name}: journal on {journal} in bearing on {bearing}")?;
         writeln!(f, "    starts in {mode}, eccentricity {offset:.6e} m")?;
-        match self.touches.iter().find(|touch| touch.clearance == k) {
-            Some(touch) => writeln!(
+        let touch = self.touches.iter().find(|touch| touch.clearance == k);
+        match touch {
+            Some(touch) => write!(
                 f,
                 "    an impact at {:.2e} m/s lasts about {:.1e} s and goes {:.1e} m deep ({:.3} kg)",
                 touch.speed, touch.duration, touch.depth, touch.mass
-            ),
-            None => Ok(()),
+            )?,
+            None => return Ok(()),
+        }
+        // else the law tells it, whatever speed and mass
+        match (model.clearances()[k].normal.damping_weight(), touch) {
+            (None, Some(touch)) => {
+                writeln!(f, ", and rebounds at {:.6} of its speed", touch.rebound)
+            }
+            _ => writeln!(f),
         }
     }
 
@@ -211,6 +220,7 @@ impl Checked<'_> {
         let clearance = &self.simulation.mechanism().model().clearances()[k];
         let touch = self.touches.iter().find(|touch| touch.clearance == k);
         let power = clearance.normal.elastic().power();
+        let weight = clearance.normal.damping_weight();
         json!({
             "radial": clearance.radial,
             "bearing_radius": clearance.bearing_radius,
@@ -218,8 +228,9 @@ impl Checked<'_> {
             "elastic": elastic_word(&self.case.description, self.simulation.mechanism(), k),
             "stiffness": power.map(|(stiffness, _)| stiffness),
             "exponent": power.map(|(_, exponent)| exponent),
-            "damping_weight": clearance.normal.damping_weight(),
-            "rebound": contact::rebound(clearance.normal.damping_weight()),
+            "damping_weight": weight,
+            "damping": word_of_damping(&self.case.description, self.simulation.mechanism(), k),
+            "rebound": weight.map(contact::rebound).or(touch.map(|touch| touch.rebound)),
             "nominal_restitution": nominal_restitution(&self.case.description, self.simulation.mechanism(), k),
             "friction": clearance.friction.is_some(),
             "tension": if clearance.cut_tension { "cut" } else { "keep" },
@@ -413,6 +424,16 @@ fn elastic_word(
     Some(description.clearance(name)?.normal.elastic.kind().word)
 }
 
+/// The word of the damping of a clearance.
+fn word_of_damping(
+    description: &Description,
+    mechanism: &Mechanism<f64>,
+    k: usize,
+) -> Option<&'static str> {
+    let name = &mechanism.model().names().clearances[k];
+    Some(description.clearance(name)?.normal.law.word())
+}
+
 /// What a clearance is, without where it is.
 fn law_lines(description: &Description, mechanism: &Mechanism<f64>, k: usize) -> String {
     let mut lines = String::new();
@@ -445,13 +466,26 @@ fn write_law(
             depth_under(law.elastic(), PRESSING)
         )?,
     }
-    writeln!(f, ", damping weight a = {}", tidy(law.damping_weight()))?;
-    let rebound = contact::rebound(law.damping_weight());
+    match law.damping_weight() {
+        Some(a) => writeln!(f, ", damping weight a = {}", tidy(a))?,
+        None => writeln!(
+            f,
+            ", damping of law {}",
+            word_of_damping(description, mechanism, k).unwrap_or_default()
+        )?,
+    }
+    let Some(a) = law.damping_weight() else { return write_rest(clearance, f) };
+    let rebound = contact::rebound(a);
     let asked = match nominal_restitution(description, mechanism, k) {
         Some(nominal) => format!(", as asked for: a nominal restitution of {nominal:.6}"),
         None => String::new(),
     };
     writeln!(f, "    one impact by itself rebounds at {rebound:.6} of its speed{asked}")?;
+    write_rest(clearance, f)
+}
+
+/// What was decided for a clearance where laws are silent.
+fn write_rest(clearance: &Clearance<f64>, f: &mut String) -> fmt::Result {
     let friction = if clearance.friction.is_some() { "with friction" } else { "no friction" };
     let tension = if clearance.cut_tension { "cut to zero" } else { "kept, as the law is printed" };
     writeln!(f, "    {friction}; tension is {tension}")?;

@@ -9,7 +9,7 @@
 //! from the stored energy, its duration by a quadrature.
 
 use super::elastic::{Elastic, ElasticLaw};
-use super::{NormalLaw, rebound};
+use super::{Loss, NormalLaw, rebound, viscous_impact};
 
 /// Nodes of the quadrature on each side of its middle.
 const NODES: i32 = 120;
@@ -30,8 +30,12 @@ pub struct Impact {
 impl Impact {
     /// That of a mass (kg) at a speed (m/s).
     pub fn of(law: &NormalLaw<f64>, mass: f64, speed: f64) -> Self {
-        let strike = Strike { law, mass, speed };
-        let rebound = rebound(law.damping_weight());
+        let a = match &law.loss {
+            Loss::Weight(a) => *a,
+            Loss::Viscous(viscous) => return viscous_impact::impact(law, viscous, mass, speed),
+        };
+        let strike = Strike { elastic: law.elastic(), a, mass, speed };
+        let rebound = rebound(a);
         Impact {
             rebound,
             depth: strike.depth(0.0),
@@ -44,8 +48,11 @@ impl Impact {
 /// The loop of an impact: penetration (m) and force (N) at so many moments from begin to end. Its area
 /// is what the impact dissipates.
 pub fn force_loop(law: &NormalLaw<f64>, mass: f64, speed: f64, moments: usize) -> Vec<[f64; 2]> {
-    let strike = Strike { law, mass, speed };
-    let rebound = rebound(law.damping_weight());
+    let Some(a) = law.damping_weight() else {
+        return viscous_impact::force_loop(law, mass, speed, moments);
+    };
+    let strike = Strike { elastic: law.elastic(), a, mass, speed };
+    let rebound = rebound(a);
     let (from, middle) = (-rebound, 0.5 * (1.0 - rebound));
     let at = |k: usize| {
         // close together at both ends, where the depth grows as a root
@@ -66,7 +73,9 @@ pub fn depth_under(elastic: &Elastic<f64>, force: f64) -> f64 {
 
 /// A mass (kg) that strikes at a speed (m/s).
 struct Strike<'a> {
-    law: &'a NormalLaw<f64>,
+    elastic: &'a Elastic<f64>,
+    /// Damping weight.
+    a: f64,
     mass: f64,
     speed: f64,
 }
@@ -74,18 +83,18 @@ struct Strike<'a> {
 impl Strike<'_> {
     /// Depth (m) where the energy G(1) − G(x), over m v², has gone into the contact.
     fn depth_after(&self, fallen: f64) -> f64 {
-        let (elastic, energy) = (self.law.elastic(), self.mass * self.speed * self.speed * fallen);
+        let (elastic, energy) = (self.elastic, self.mass * self.speed * self.speed * fallen);
         inverse(elastic, energy, |depth| (elastic.energy(depth), elastic.force(depth).0))
     }
 
     /// Depth (m) at the rate x v.
     fn depth(&self, x: f64) -> f64 {
-        self.depth_after(fall(self.law.damping_weight(), x))
+        self.depth_after(fall(self.a, x))
     }
 
     /// Force (N) at the rate x v.
     fn force(&self, x: f64) -> f64 {
-        self.law.elastic().force(self.depth(x)).0 * (1.0 + self.law.damping_weight() * x)
+        self.elastic.force(self.depth(x)).0 * (1.0 + self.a * x)
     }
 
     /// The largest force (N), by golden sections.
@@ -103,7 +112,7 @@ impl Strike<'_> {
     /// Time (s) from the rate `to` v down to `from` v: ∫ m v dx/(F_e (1 + a x)), whose integrand is
     /// infinite at ends of the contact, by tanh–sinh quadrature.
     fn duration(&self, from: f64, to: f64) -> f64 {
-        let a = self.law.damping_weight();
+        let a = self.a;
         let half = 0.5 * (to - from);
         let step = 6.0 / f64::from(NODES);
         let term = |k: i32| {
@@ -114,7 +123,7 @@ impl Strike<'_> {
             let gap = 2.0 * half / (1.0 + (2.0 * lean.abs()).exp());
             let x = if s < 0.0 { from + gap } else { to - gap };
             let fallen = if s < 0.0 { near_end(a, from, gap) } else { near_end(a, to, -gap) };
-            let force = self.law.elastic().force(self.depth_after(fallen)).0;
+            let force = self.elastic.force(self.depth_after(fallen)).0;
             if gap > 0.0 && force > 0.0 { weight / (force * (1.0 + a * x)) } else { 0.0 }
         };
         self.mass * self.speed * half * step * (-NODES..=NODES).map(term).sum::<f64>()

@@ -1,6 +1,6 @@
 //! Normal-force laws, one file a law.
 //!
-//! Every law here is of the family
+//! Nearly every law here is of the family
 //! ```text
 //! F_N = F_e(δ) [ 1 + a δ̇/δ̇⁽⁻⁾ ]
 //! ```
@@ -8,17 +8,22 @@
 //! with any. δ is the penetration, δ̇ its rate (positive while the bodies approach), δ̇⁽⁻⁾ the rate at
 //! which the contact began. One isolated impact rebounds at e times its speed, with e the root of
 //! `a (1 + e) = ln((1 + a)/(1 − a e))`, whatever F_e, the mass and the speed.
+//!
+//! Laws with a damping of their own, F_N = K δⁿ + c δ^p δ̇, stand in `viscous`.
 
 mod damping;
 pub mod elastic;
 mod impact;
 pub mod stiffness;
+pub mod viscous;
+mod viscous_impact;
 
 pub use damping::{About, Damping};
 pub use impact::{Impact, depth_under, force_loop};
 
 use crate::scalar::Scalar;
 use elastic::{Elastic, ElasticLaw};
+use viscous::Viscous;
 
 /// How deep and how fast journal and bearing press into each other.
 #[derive(Debug, Clone, Copy)]
@@ -42,12 +47,16 @@ pub struct NormalForce<S> {
     pub d_depth: S,
     /// ∂F_N/∂δ̇ (N s/m).
     pub d_rate: S,
+    /// The stiffness (N/m) that the contact swings on: ∂F_N/∂δ, but for a damping that grows with δ
+    /// by itself.
+    pub swing: S,
 }
 
 impl<S: Scalar> NormalForce<S> {
     /// No force.
     pub fn none() -> Self {
-        NormalForce { value: S::zero(), elastic: S::zero(), d_depth: S::zero(), d_rate: S::zero() }
+        let zero = S::zero();
+        NormalForce { value: zero, elastic: zero, d_depth: zero, d_rate: zero, swing: zero }
     }
 }
 
@@ -70,17 +79,36 @@ pub fn rebound(a: f64) -> f64 {
     low
 }
 
-/// A normal-force law of the family, with its parameters.
+/// What takes energy out of a contact.
+#[derive(Debug, Clone, Copy)]
+enum Loss<S> {
+    /// The weight a of 1 + a δ̇/δ̇⁽⁻⁾.
+    Weight(S),
+    /// A damping that knows nothing of the impact.
+    Viscous(Viscous<S>),
+}
+
+/// A normal-force law of any kind, with its parameters.
 #[derive(Debug, Clone, Copy)]
 pub struct NormalLaw<S> {
     elastic: Elastic<S>,
-    damping_weight: S,
+    loss: Loss<S>,
+    /// The q such that the force is analytic in δ^(1/q), and q over that of the elastic part.
+    degree: Option<(u32, u32)>,
 }
 
 impl<S: Scalar> NormalLaw<S> {
     /// A law with its elastic part and damping weight a.
     pub fn new(elastic: Elastic<S>, damping_weight: S) -> Self {
-        NormalLaw { elastic, damping_weight }
+        let degree = elastic.degree().map(|q| (q, 1));
+        NormalLaw { elastic, loss: Loss::Weight(damping_weight), degree }
+    }
+
+    /// A law with its elastic part and a viscous damping.
+    pub fn viscous(elastic: Elastic<S>, viscous: Viscous<S>) -> Self {
+        let q = viscous.degree();
+        let degree = elastic.degree().filter(|own| q.is_multiple_of(*own)).map(|own| (q, q / own));
+        NormalLaw { elastic, loss: Loss::Viscous(viscous), degree }
     }
 
     /// The elastic part F_e(δ).
@@ -88,9 +116,28 @@ impl<S: Scalar> NormalLaw<S> {
         &self.elastic
     }
 
-    /// Damping weight a.
-    pub fn damping_weight(&self) -> S {
-        self.damping_weight
+    /// Damping weight a; `None` of a law whose damping knows nothing of the impact.
+    pub fn damping_weight(&self) -> Option<S> {
+        match self.loss {
+            Loss::Weight(a) => Some(a),
+            Loss::Viscous(_) => None,
+        }
+    }
+
+    /// The exponent of the power law that the damping goes with, if not with any elastic part.
+    pub fn wanted_exponent(&self) -> Option<f64> {
+        match &self.loss {
+            Loss::Weight(_) => None,
+            Loss::Viscous(viscous) => Some(viscous.exponent()),
+        }
+    }
+
+    /// Whether the law can pull.
+    pub fn can_pull(&self) -> bool {
+        match &self.loss {
+            Loss::Weight(a) => *a > S::zero(),
+            Loss::Viscous(viscous) => viscous.damps(),
+        }
     }
 
     /// The force at a penetration; none at zero depth or less. Only where the elastic part is smooth
@@ -100,25 +147,17 @@ impl<S: Scalar> NormalLaw<S> {
         if p.depth <= S::zero() && !self.elastic.goes_on_below() {
             return NormalForce::none();
         }
-        self.damped(p, self.elastic.force(p.depth))
-    }
-
-    /// The force of an elastic one and its slope, with damping.
-    #[inline(always)]
-    fn damped(&self, p: Penetration<S>, (elastic, slope): (S, S)) -> NormalForce<S> {
-        let factor = self.factor(p);
-        NormalForce {
-            value: elastic * factor,
-            elastic,
-            d_depth: slope * factor,
-            d_rate: elastic * self.damping_weight * p.inverse_impact_rate,
+        let elastic = self.elastic.force(p.depth);
+        match &self.loss {
+            Loss::Weight(a) => weighted(*a, p, elastic),
+            Loss::Viscous(viscous) => damped(viscous.damping(p.depth), p, elastic),
         }
     }
 
     /// The depth δ = r^q of a root r.
     #[inline(always)]
     pub fn depth_from_root(&self, root: S) -> S {
-        let q = self.elastic.degree().unwrap_or(1);
+        let q = self.degree.map_or(1, |(q, _)| q);
         (1..q).fold(root, |product, _| product * root)
     }
 
@@ -127,16 +166,56 @@ impl<S: Scalar> NormalLaw<S> {
     /// case for r < 0: an engine may look a little beyond a contact's end.
     #[inline(always)]
     pub fn force_from_root(&self, p: Penetration<S>, root: S) -> NormalForce<S> {
-        match self.elastic.force_from_root(root) {
-            Some(elastic) => self.damped(p, elastic),
-            None => self.force(p),
+        let own = match self.degree {
+            Some((_, times)) => (1..times).fold(root, |product, _| product * root),
+            None => return self.force(p),
+        };
+        let Some(elastic) = self.elastic.force_from_root(own) else { return self.force(p) };
+        match &self.loss {
+            Loss::Weight(a) => weighted(*a, p, elastic),
+            Loss::Viscous(viscous) => damped(viscous.damping_from_root(root), p, elastic),
         }
     }
 
-    /// 1 + a δ̇/δ̇⁽⁻⁾: where it is negative the law pulls.
+    /// A number that is positive where the law presses and negative where it pulls, one at the begin
+    /// of an impact: 1 + a δ̇/δ̇⁽⁻⁾, or of a viscous damping (F_e/(c δ^p) + δ̇)/δ̇⁽⁻⁾.
     #[inline(always)]
-    pub fn factor(&self, p: Penetration<S>) -> S {
-        S::one() + self.damping_weight * p.rate * p.inverse_impact_rate
+    pub fn pressing(&self, p: Penetration<S>) -> S {
+        match &self.loss {
+            Loss::Weight(a) => S::one() + *a * p.rate * p.inverse_impact_rate,
+            Loss::Viscous(viscous) => {
+                (self.lead(viscous, p.depth).0 + p.rate) * p.inverse_impact_rate
+            }
+        }
+    }
+
+    /// The rate (1/s) of that number, from δ̈ (m/s²).
+    pub fn pressing_rate(&self, p: Penetration<S>, second: S) -> S {
+        match &self.loss {
+            Loss::Weight(a) => *a * second * p.inverse_impact_rate,
+            Loss::Viscous(viscous) => {
+                (self.lead(viscous, p.depth).1 * p.rate + second) * p.inverse_impact_rate
+            }
+        }
+    }
+
+    /// What a change of the rate (m/s) makes of that number (s/m).
+    pub fn pressing_slope(&self, inverse_impact_rate: S) -> S {
+        match &self.loss {
+            Loss::Weight(a) => *a * inverse_impact_rate,
+            Loss::Viscous(_) => inverse_impact_rate,
+        }
+    }
+
+    /// F_e/(c δ^p) (m/s) and its slope (1/s): the rate at which the law would be without force.
+    fn lead(&self, viscous: &Viscous<S>, depth: S) -> (S, S) {
+        if depth <= S::zero() {
+            return (S::zero(), S::zero());
+        }
+        let ((elastic, slope), (damping, bend)) =
+            (self.elastic.force(depth), viscous.damping(depth));
+        let lead = elastic / damping;
+        (lead, (slope - lead * bend) / damping)
     }
 
     /// Energy (J) stored in the contact at a depth: the integral of the elastic part.
@@ -148,9 +227,38 @@ impl<S: Scalar> NormalLaw<S> {
     }
 
     /// The power in which a trajectory is smooth beside δ = 0: solutions are analytic in δ^(1/q)
-    /// where the elastic part is. Zero where no q is of use.
+    /// where the force is. Zero where no q is of use.
     pub fn smooth_power(&self) -> f64 {
-        self.elastic.degree().map_or(0.0, |q| 1.0 / f64::from(q))
+        self.degree.map_or(0.0, |(q, _)| 1.0 / f64::from(q))
+    }
+}
+
+/// F_e (1 + a δ̇/δ̇⁽⁻⁾), from F_e and its slope.
+#[inline(always)]
+fn weighted<S: Scalar>(a: S, p: Penetration<S>, (elastic, slope): (S, S)) -> NormalForce<S> {
+    let factor = S::one() + a * p.rate * p.inverse_impact_rate;
+    NormalForce {
+        value: elastic * factor,
+        elastic,
+        d_depth: slope * factor,
+        d_rate: elastic * a * p.inverse_impact_rate,
+        swing: slope * factor,
+    }
+}
+
+/// F_e + c δ^p δ̇, from both with their slopes.
+#[inline(always)]
+fn damped<S: Scalar>(
+    (damping, bend): (S, S),
+    p: Penetration<S>,
+    (elastic, slope): (S, S),
+) -> NormalForce<S> {
+    NormalForce {
+        value: elastic + damping * p.rate,
+        elastic,
+        d_depth: slope + bend * p.rate,
+        d_rate: damping,
+        swing: slope,
     }
 }
 

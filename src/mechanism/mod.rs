@@ -284,7 +284,7 @@ impl<S: Scalar> Mechanism<S> {
         let (k, what) = self.slots[slot];
         let clearance = &self.model.clearances()[k];
         let gap = self.now.gap(k, clearance);
-        let mode = clearance.switched(&self.modes[k], what, || {
+        let mode = clearance.switched(&self.modes[k], what, &gap, || {
             let (motions, accelerations) = (&self.now.motions, &self.now.accelerations);
             let rates = clearance.rates(&gap, motions);
             (rates, clearance.second_rates(&gap, &rates, motions, accelerations).1)

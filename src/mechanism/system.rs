@@ -137,7 +137,7 @@ impl<S: Scalar> System<S> for Mechanism<S> {
             crate::clearance::EventSlot::Depth => (S::zero(), S::zero()),
             _ => clearance.second_rates(&gap, &rates, &now.motions, &now.accelerations),
         };
-        clearance.event_rate(&self.modes[k], what, rates.rate, second)
+        clearance.event_rate(&self.modes[k], what, &gap, rates.rate, second)
     }
 
     fn course(&self, slot: usize) -> Course {

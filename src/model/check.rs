@@ -3,11 +3,12 @@
 
 use super::normal_law;
 use super::{
-    BodyDescription, ClearanceDescription, Complaint, Complaints, Description, DriveDescription,
-    JointDescription, KeyPath, LoadDescription, NamedPoint, NormalDescription, StartDescription,
-    shortened,
+    BodyDescription, ClearanceDescription, Complaint, Complaints, DampingDescription, Description,
+    DriveDescription, JointDescription, KeyPath, LoadDescription, NamedPoint, NormalDescription,
+    StartDescription, shortened,
 };
-use crate::contact::elastic::ElasticLaw;
+use crate::contact::Damping;
+use crate::contact::elastic::{self, ElasticLaw};
 use crate::joint::{PRISMATIC, REVOLUTE};
 use crate::parameter::{Key, Takes, Value, Values};
 use crate::scalar::Decimal;
@@ -290,6 +291,18 @@ fn check_elastic(complaints: &mut Complaints, key: &KeyPath, clearance: &Clearan
     if let Some(objection) = law.elastic().objection() {
         return complaints.add(key.key("elastic"), objection);
     }
+    if let Some(wanted) = law.wanted_exponent() {
+        let word = clearance.normal.law.word();
+        let goes_with = format!("law {word:?} goes with the power law and exponent {wanted}");
+        match law.elastic().power() {
+            Some((_, exponent)) if clearance.normal.elastic.is(elastic::POWER.word) => {
+                if exponent != wanted {
+                    complaints.add(key.key("exponent"), format!("{goes_with}, this is {exponent}"));
+                }
+            }
+            _ => complaints.add(key.key("elastic"), goes_with),
+        }
+    }
     let (what, number) = match law.elastic().power() {
         Some((stiffness, _)) => ("stiffness", stiffness),
         None => ("elastic", law.elastic().force(1e-3 * radial.min(law.elastic().deepest())).1),
@@ -308,13 +321,23 @@ fn check_normal(
     key: &KeyPath,
     normal: &NormalDescription,
 ) {
-    check_restitution(complaints, key, normal);
+    match &normal.law {
+        DampingDescription::Weight(damping) => {
+            check_restitution(complaints, key, normal, *damping);
+        }
+        DampingDescription::Viscous(values) => check_part(complaints, description, key, values),
+    }
     check_part(complaints, description, key, &normal.elastic);
 }
 
 /// A law that dissipates needs a restitution, nominal or achieved, one that does not takes none.
-fn check_restitution(complaints: &mut Complaints, key: &KeyPath, normal: &NormalDescription) {
-    let (dissipates, law) = (normal.law.about().restitution, normal.law.about().word);
+fn check_restitution(
+    complaints: &mut Complaints,
+    key: &KeyPath,
+    normal: &NormalDescription,
+    damping: Damping,
+) {
+    let (dissipates, law) = (damping.about().restitution, damping.about().word);
     let (nominal, achieved) = (key.key("restitution"), key.key("achieved_restitution"));
     let given = [(nominal, &normal.restitution), (achieved, &normal.achieved_restitution)];
     for (key, restitution) in &given {
@@ -335,7 +358,7 @@ fn check_restitution(complaints: &mut Complaints, key: &KeyPath, normal: &Normal
             complaints.add(key, "the restitution is given too: one of the two determines the law");
         }
         (None, Some(achieved)) if dissipates => {
-            let (achieved, least) = (achieved.to_f64(), normal.law.least_rebound());
+            let (achieved, least) = (achieved.to_f64(), damping.least_rebound());
             if achieved > 0.0 && achieved < least {
                 let at = format!("law {law:?} rebounds at {least:.4} of the speed or more");
                 complaints.add(key, format!("is {achieved}, but {at}; `freeplay laws` has others"));

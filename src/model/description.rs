@@ -98,7 +98,7 @@ pub enum Tension {
 #[derive(Debug, Clone, PartialEq)]
 pub struct NormalDescription {
     /// The law of its damping.
-    pub law: Damping,
+    pub law: DampingDescription,
     /// Restitution c_e in (0, 1]; the Hertz law has none.
     pub restitution: Option<Decimal>,
     /// The restitution that one impact by itself is to have, in place of a nominal one.
@@ -114,10 +114,30 @@ impl Description {
     }
 }
 
+/// The damping of a normal force.
+#[derive(Debug, Clone, PartialEq)]
+pub enum DampingDescription {
+    /// A weight of 1 + a δ̇/δ̇⁽⁻⁾.
+    Weight(Damping),
+    /// A viscous damping, with its keys.
+    Viscous(Values),
+}
+
+impl DampingDescription {
+    /// Its name in case files.
+    pub fn word(&self) -> &'static str {
+        match self {
+            DampingDescription::Weight(damping) => damping.about().word,
+            DampingDescription::Viscous(viscous) => viscous.kind().word,
+        }
+    }
+}
+
 impl NormalDescription {
     /// The nominal restitution that gives the one to be achieved, where that is asked for.
     pub fn nominal_restitution(&self) -> Option<f64> {
-        self.law.nominal(self.achieved_restitution.as_ref()?.to_f64())
+        let DampingDescription::Weight(damping) = &self.law else { return None };
+        damping.nominal(self.achieved_restitution.as_ref()?.to_f64())
     }
 }
 

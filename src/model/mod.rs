@@ -14,7 +14,8 @@ pub use complaint::*;
 pub use description::*;
 
 use crate::clearance::Clearance;
-use crate::contact::elastic::{self, Elastic};
+use crate::contact::elastic::{self, Elastic, ElasticLaw};
+use crate::contact::viscous::{self, Viscous};
 use crate::contact::{Damping, NormalLaw};
 use crate::course::Course;
 use crate::friction::{self, Friction};
@@ -343,9 +344,17 @@ fn normal_law<S: Scalar>(
     journal: S,
 ) -> Option<NormalLaw<S>> {
     let elastic = Elastic::new(&normal.elastic, &elastic::Ends { bearing, journal })?;
+    let damping = match &normal.law {
+        DampingDescription::Weight(damping) => damping,
+        DampingDescription::Viscous(values) => {
+            let stiffness = elastic.power().map_or(S::one(), |(stiffness, _)| stiffness);
+            let viscous = Viscous::new(values, &viscous::Ends { stiffness })?;
+            return Some(NormalLaw::viscous(elastic, viscous));
+        }
+    };
     let damping_weight = match &normal.achieved_restitution {
         Some(achieved) => Damping::Exact.weight(achieved.value()),
-        None => normal.law.weight(normal.restitution.as_ref().map_or(S::one(), Decimal::value)),
+        None => damping.weight(normal.restitution.as_ref().map_or(S::one(), Decimal::value)),
     };
     Some(NormalLaw::new(elastic, damping_weight))
 }
