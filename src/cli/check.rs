@@ -7,6 +7,7 @@ use crate::clearance::Clearance;
 use crate::contact::elastic::ElasticLaw;
 use crate::contact::{self, depth_under};
 use crate::dae::System;
+use crate::friction::FrictionLaw;
 use crate::joint::REVOLUTE;
 use crate::mechanism::{Mechanism, Observation};
 use crate::model::Description;
@@ -221,6 +222,9 @@ impl Checked<'_> {
         let touch = self.touches.iter().find(|touch| touch.clearance == k);
         let power = clearance.normal.elastic().power();
         let weight = clearance.normal.damping_weight();
+        let name = &self.simulation.mechanism().model().names().clearances[k];
+        let described = self.case.description.clearance(name);
+        let described = described.and_then(|clearance| clearance.friction.as_ref());
         json!({
             "radial": clearance.radial,
             "bearing_radius": clearance.bearing_radius,
@@ -233,6 +237,11 @@ impl Checked<'_> {
             "rebound": weight.map(contact::rebound).or(touch.map(|touch| touch.rebound)),
             "nominal_restitution": nominal_restitution(&self.case.description, self.simulation.mechanism(), k),
             "friction": clearance.friction.is_some(),
+            "friction_law": described.map(|values| values.kind().word),
+            "holds_at_rest": clearance.friction.map(|law| law.inner_scale().is_some()),
+            "creep_under_half": described.zip(clearance.friction).and_then(|(values, law)| {
+                law.creep(0.5 * friction_of_rest(values))
+            }),
             "tension": if clearance.cut_tension { "cut" } else { "keep" },
             "minimum_impact_rate": clearance.minimum_impact_rate,
             "maximum_penetration": clearance.maximum_penetration,
@@ -474,19 +483,50 @@ fn write_law(
             word_of_damping(description, mechanism, k).unwrap_or_default()
         )?,
     }
-    let Some(a) = law.damping_weight() else { return write_rest(clearance, f) };
+    let described = description.clearance(&mechanism.model().names().clearances[k]);
+    let friction = described.and_then(|clearance| clearance.friction.as_ref());
+    let Some(a) = law.damping_weight() else { return write_rest(friction, clearance, f) };
     let rebound = contact::rebound(a);
     let asked = match nominal_restitution(description, mechanism, k) {
         Some(nominal) => format!(", as asked for: a nominal restitution of {nominal:.6}"),
         None => String::new(),
     };
     writeln!(f, "    one impact by itself rebounds at {rebound:.6} of its speed{asked}")?;
-    write_rest(clearance, f)
+    write_rest(friction, clearance, f)
+}
+
+/// Friction of rest over the normal force: the key `static`, or the one coefficient there is.
+fn friction_of_rest(friction: &Values) -> f64 {
+    let key = if friction.get("static").is_some() { "static" } else { "coefficient" };
+    friction.number(key)
+}
+
+/// The friction of a clearance, and what becomes of a load that rests on it.
+fn friction_at_rest(described: Option<&Values>, clearance: &Clearance<f64>) -> String {
+    let (Some(values), Some(law)) = (described, &clearance.friction) else {
+        return "no friction".to_owned();
+    };
+    let word = values.kind().word;
+    if law.inner_scale().is_some() {
+        return format!("friction {word}, which holds a load at rest");
+    }
+    let half = 0.5 * friction_of_rest(values);
+    match law.creep(half) {
+        Some(slip) => format!(
+            "friction {word}, which CREEPS under a load at rest: at {slip:.1e} m/s under {half} of the \
+             normal force, half of what it can bear"
+        ),
+        None => format!("friction {word}"),
+    }
 }
 
 /// What was decided for a clearance where laws are silent.
-fn write_rest(clearance: &Clearance<f64>, f: &mut String) -> fmt::Result {
-    let friction = if clearance.friction.is_some() { "with friction" } else { "no friction" };
+fn write_rest(
+    described: Option<&Values>,
+    clearance: &Clearance<f64>,
+    f: &mut String,
+) -> fmt::Result {
+    let friction = friction_at_rest(described, clearance);
     let tension = if clearance.cut_tension { "cut to zero" } else { "kept, as the law is printed" };
     writeln!(f, "    {friction}; tension is {tension}")?;
     writeln!(
