@@ -367,7 +367,12 @@ fn the_schema_of_cases_has_the_words_that_the_program_reads() {
         let words = at.get("enum").unwrap_or_else(|| &at["oneOf"][1]["enum"]);
         let kinds: Value = freeplay::contact::elastic::KINDS.iter().map(|kind| kind.word).collect();
         let words = if key.ends_with(".elastic") { &kinds } else { words };
-        assert_eq!(words, &serde_json::json!(known), "{key} in the schema");
+        // laws with a damping of their own have a schema each
+        let mut words = words.as_array().unwrap().clone();
+        if key.ends_with("normal.law") {
+            words.extend(freeplay::contact::viscous::KINDS.iter().map(|kind| kind.word.into()));
+        }
+        assert_eq!(Value::from(words), serde_json::json!(known), "{key} in the schema");
     }
 }
 

@@ -89,7 +89,7 @@ impl Strike<'_> {
 
     /// Depth (m) at the rate x v.
     fn depth(&self, x: f64) -> f64 {
-        self.depth_after(fall(self.a, x))
+        self.depth_after(fall(self.a, 1.0, x - 1.0))
     }
 
     /// Force (N) at the rate x v.
@@ -122,7 +122,7 @@ impl Strike<'_> {
             // distance from the nearer end, which the point itself would lose
             let gap = 2.0 * half / (1.0 + (2.0 * lean.abs()).exp());
             let x = if s < 0.0 { from + gap } else { to - gap };
-            let fallen = if s < 0.0 { near_end(a, from, gap) } else { near_end(a, to, -gap) };
+            let fallen = if s < 0.0 { fall(a, from, gap) } else { fall(a, to, -gap) };
             let force = self.elastic.force(self.depth_after(fallen)).0;
             if gap > 0.0 && force > 0.0 { weight / (force * (1.0 + a * x)) } else { 0.0 }
         };
@@ -150,23 +150,22 @@ fn inverse(elastic: &Elastic<f64>, value: f64, of: impl Fn(f64) -> (f64, f64)) -
     depth
 }
 
-/// G(1) − G(x).
-fn fall(a: f64, x: f64) -> f64 {
-    if a < 1e-5 {
-        // the series; the equation has few places there
-        return 0.5 * (1.0 - x * x) - a / 3.0 * (1.0 - x * x * x);
-    }
-    (1.0 - x) / a - (a.ln_1p() - (a * x).ln_1p()) / (a * a)
+/// G(end) − G(end + gap), without a loss of digits anywhere:
+/// ```text
+/// G(x + h) − G(x) = x g + g² φ(a g),   g = h/(1 + a x),   φ(y) = (y − ln(1 + y))/y²
+/// ```
+fn fall(a: f64, end: f64, gap: f64) -> f64 {
+    let g = gap / (1.0 + a * end);
+    -g * (end + g * curvature(a * g))
 }
 
-/// G(1) − G(end + gap), where it is zero at the end; near it by the slope, G′ = x/(1 + a x).
-fn near_end(a: f64, end: f64, gap: f64) -> f64 {
-    if gap.abs() > 1e-3 {
-        return fall(a, end + gap);
+/// φ(y) = (y − ln(1 + y))/y².
+fn curvature(y: f64) -> f64 {
+    if y.abs() > 0.1 {
+        return (y - y.ln_1p()) / (y * y);
     }
-    let factor = 1.0 + a * end;
-    // G″ = 1/(1 + a x)², G‴ = −2 a/(1 + a x)³
-    -gap * (end / factor + gap * (0.5 / factor.powi(2) - gap * a / (3.0 * factor.powi(3))))
+    // ½ − y/3 + y²/4 − …
+    (2..20).rev().fold(0.0, |sum, k| 1.0 / f64::from(k) - y * sum)
 }
 
 #[cfg(test)]
@@ -192,6 +191,24 @@ mod tests {
         assert!((found.duration / found.depth - 2.943_275_184_324_7).abs() < 1e-11);
         // a linear spring: half a period
         assert!((impact(0.0, 1.0).duration - std::f64::consts::PI).abs() < 1e-11);
+    }
+
+    #[test]
+    fn the_first_integral_keeps_its_digits() {
+        for a in [1e-9, 1e-3, 0.4, 3.0] {
+            let g = |x: f64| x / a - (a * x).ln_1p() / (a * a);
+            for (end, gap) in [(1.0, -0.5), (-0.25, 0.1), (1.0, -1.2)] {
+                // of the plain form so many digits are left
+                let left = 4e-16 * (1.0 / a + 1.0 / (a * a));
+                assert!(
+                    (fall(a, end, gap) - g(end) + g(end + gap)).abs() <= left,
+                    "{a} {end} {gap}"
+                );
+            }
+            // G' = x/(1 + a x)
+            let near = fall(a, 1.0, -1e-12);
+            assert!((near * (1.0 + a) / 1e-12 - 1.0).abs() < 1e-11, "{near}");
+        }
     }
 
     #[test]

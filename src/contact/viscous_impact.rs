@@ -133,16 +133,26 @@ impl Passage<'_> {
             self.follow(steps, |_, [_, force]| forces.push(force));
         let best = (0..=steps).max_by(|a, b| forces[*a].total_cmp(&forces[*b])).unwrap_or(0);
         let force = match best {
-            0 => forces[0],
-            _ if best == steps => forces[best],
-            // of the parabola through three
-            _ => {
-                let [a, b, c] = [forces[best - 1], forces[best], forces[best + 1]];
-                b - (c - a) * (c - a) / (8.0 * (a - 2.0 * b + c))
-            }
+            0 | 1 => forces[best],
+            _ if best + 2 > steps => forces[best],
+            _ => summit(std::array::from_fn(|k| forces[best + k - 2])),
         };
         Passed { log_rebound, log_middle, duration, force }
     }
+}
+
+/// The largest value of the polynomial through five, of which the middle one is largest.
+fn summit([a, b, c, d, e]: [f64; 5]) -> f64 {
+    let first = (a - 8.0 * b + 8.0 * d - e) / 12.0;
+    let second = (-a + 16.0 * b - 30.0 * c + 16.0 * d - e) / 12.0;
+    let third = (-a + 2.0 * b - 2.0 * d + e) / 2.0;
+    let fourth = a - 4.0 * b + 6.0 * c - 4.0 * d + e;
+    let slope = |x: f64| first + x * (second + x * (third / 2.0 + x * fourth / 6.0));
+    let mut x = 0.0;
+    for _ in 0..5 {
+        x -= slope(x) / second;
+    }
+    c + x * (first + x * (second / 2.0 + x * (third / 6.0 + x * fourth / 24.0)))
 }
 
 #[cfg(test)]

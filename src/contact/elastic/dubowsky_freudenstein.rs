@@ -28,7 +28,7 @@ use crate::scalar::Scalar;
 /// The kind and its keys.
 pub const KIND: Kind = Kind {
     word: "dubowsky-freudenstein",
-    title: "Goldsmith's line contact in the form of Dubowsky and Freudenstein, δ = F σ/L [ln(L³ c/(F R_b R_j σ)) + 1]",
+    title: "line contact after Goldsmith, δ = F σ/L [ln(L³ c/(F R_b R_j σ)) + 1]",
     source: "Goldsmith 1960, Impact, Arnold; Dubowsky, Freudenstein 1971, J. Eng. Ind. 93:305–309, doi 10.1115/1.3427895",
     example: r#"[joints.A.clearance]
 normal = { law = "lankarani-nikravesh", restitution = 0.9, elastic = "dubowsky-freudenstein", young = 207e9, poisson = 0.3, length = 0.015 }"#,

@@ -26,7 +26,7 @@ use crate::scalar::Scalar;
 /// The kind and its keys.
 pub const KIND: Kind = Kind {
     word: "esdu-78035",
-    title: "line contact of cylinders, δ = F σ/L [ln(4 L c/(F σ)) + 1]",
+    title: "line contact, δ = F σ/L [ln(4 L c/(F σ)) + 1]",
     source: "ESDU 78035, Contact phenomena I, Engineering Sciences Data Unit, London, 1978",
     example: r#"[joints.A.clearance]
 normal = { law = "lankarani-nikravesh", restitution = 0.9, elastic = "esdu-78035", young = 207e9, poisson = 0.3, length = 0.015 }"#,

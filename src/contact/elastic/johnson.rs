@@ -23,7 +23,7 @@ use crate::scalar::Scalar;
 /// The kind and its keys.
 pub const KIND: Kind = Kind {
     word: "johnson",
-    title: "line contact of cylinders, δ = F/(π E* L) [ln(4 π E* c L/F) − 1]",
+    title: "line contact, δ = F/(π E* L) [ln(4 π E* c L/F) − 1]",
     source: "Johnson 1985, Contact Mechanics, Cambridge University Press, doi 10.1017/CBO9781139171731",
     example: r#"[joints.A.clearance]
 normal = { law = "lankarani-nikravesh", restitution = 0.9, elastic = "johnson", young = 207e9, poisson = 0.3, length = 0.015 }"#,

@@ -23,7 +23,7 @@ use crate::scalar::Scalar;
 /// The kind and its keys.
 pub const KIND: Kind = Kind {
     word: "liu",
-    title: "line contact of cylinders that nearly fit, F_e = (π/2) E* L δ √(δ/(2 (c + δ)))",
+    title: "line contact of a journal that nearly fits, F_e = (π/2) E* L δ √(δ/(2 (c + δ)))",
     source: "Liu, Zhang, Yang 2007, Mech. Mach. Theory 42:183–197, doi 10.1016/j.mechmachtheory.2006.02.006",
     example: r#"[joints.A.clearance]
 normal = { law = "lankarani-nikravesh", restitution = 0.9, elastic = "liu", young = 207e9, poisson = 0.3, length = 0.015 }"#,

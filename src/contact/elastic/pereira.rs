@@ -28,7 +28,7 @@ use crate::scalar::Scalar;
 /// The kind and its keys.
 pub const KIND: Kind = Kind {
     word: "pereira",
-    title: "line contact of cylinders fitted by a power, F_e = [(0.965 c + 0.0965) L E*/c] δⁿ in mm, N, MPa",
+    title: "line contact fitted by a power, F_e = [(0.965 c + 0.0965) L E*/c] δⁿ in mm, N, MPa",
     source: "Pereira, Ramalho, Ambrósio 2011, Nonlinear Dyn. 63:681–697, doi 10.1007/s11071-010-9830-3",
     example: r#"[joints.A.clearance]
 normal = { law = "lankarani-nikravesh", restitution = 0.9, elastic = "pereira", young = 207e9, poisson = 0.3, length = 0.015 }"#,

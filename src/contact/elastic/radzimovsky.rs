@@ -28,7 +28,7 @@ use crate::scalar::Scalar;
 /// The kind and its keys.
 pub const KIND: Kind = Kind {
     word: "radzimovsky",
-    title: "line contact of cylinders, δ = F/(π E* L) [2/3 + ln(4 R_b/b) + ln(4 R_j/b)]",
+    title: "line contact, δ = F/(π E* L) [2/3 + ln(4 R_b/b) + ln(4 R_j/b)]",
     source: "Radzimovsky 1953, University of Illinois, Engineering Experiment Station, Bulletin 408",
     example: r#"[joints.A.clearance]
 normal = { law = "lankarani-nikravesh", restitution = 0.9, elastic = "radzimovsky", young = 207e9, poisson = 0.3, length = 0.015 }"#,

@@ -27,7 +27,7 @@ use crate::scalar::Scalar;
 /// The kind and its keys.
 pub const KIND: Kind = Kind {
     word: "kelvin-voigt",
-    title: "a linear spring beside a linear damper, F_N = K δ + c δ̇; the force jumps at both ends",
+    title: "spring and damper, F_N = K δ + c δ̇; the force jumps at both ends",
     source: "Goldsmith 1960, Impact, Arnold",
     example: r#"[joints.A.clearance]
 normal = { law = "kelvin-voigt", damping = 200.0, stiffness = 2e7, exponent = 1.0 }"#,

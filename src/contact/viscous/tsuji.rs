@@ -27,7 +27,7 @@ use crate::scalar::Scalar;
 /// The kind and its keys.
 pub const KIND: Kind = Kind {
     word: "tsuji",
-    title: "Hertz's spring with a damping as δ^(1/4): all impacts of one mass rebound alike",
+    title: "F_N = K δ^(3/2) + c δ^(1/4) δ̇: all impacts of one mass rebound alike",
     source: "Tsuji, Tanaka, Ishida 1992, Powder Technol. 71:239–250, doi 10.1016/0032-5910(92)88030-L; Antypov, Elliott 2011, EPL 94:50004",
     example: r#"[joints.A.clearance]
 normal = { law = "tsuji", restitution = 0.8, mass = 0.05, stiffness = 1e10 }"#,
