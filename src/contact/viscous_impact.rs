@@ -191,11 +191,11 @@ mod tests {
 
     #[test]
     fn a_spring_with_a_damper_swings_as_its_closed_form_says() {
-        for (damping, ratio) in [("2236.067977499789696", 0.05), ("26832.815729997476", 0.6)] {
+        for (damping, ratio) in [("2236.067977499789696", 0.05_f64), ("26832.815729997476", 0.6)] {
             let law = law("kelvin-voigt", damping, 1.0);
             let impact = Impact::of(&law, MASS, 0.7);
             let omega = (STIFFNESS / MASS).sqrt();
-            let left = (1.0 - ratio * ratio as f64).sqrt();
+            let left = (1.0 - ratio * ratio).sqrt();
             let rebound = (-PI * ratio / left).exp();
             assert!((impact.rebound / rebound - 1.0).abs() < 1e-13);
             assert!((integrated(&law, 0.7) / rebound - 1.0).abs() < 1e-11);
