@@ -513,7 +513,7 @@ fn friction_at_rest(described: Option<&Values>, clearance: &Clearance<f64>) -> S
     let half = 0.5 * friction_of_rest(values);
     match law.creep(half) {
         Some(slip) => format!(
-            "friction {word}, which CREEPS under a load at rest: at {slip:.1e} m/s under {half} of the \
+            "friction {word}, which CREEPS under a load at rest: at {slip:.1e} m/s under {half} of the\n    \
              normal force, half of what it can bear"
         ),
         None => format!("friction {word}"),

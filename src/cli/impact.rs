@@ -382,15 +382,15 @@ fn in_words(compared: &[Compared], fall: &Fall) -> String {
     let [bearing, radial, length] = JOINT.map(|length| 1e3 * length);
     let where_to = match fall.aside > 0.0 {
         true => format!(
-            "its bearing, {} of the clearance beside the middle; closed forms are those of the speed along \
-             the normal",
+            "its bearing, {} of the clearance beside the middle; closed forms\nare those of the speed along \
+             the normal, without what it swings",
             fall.aside
         ),
         false => "the wall of its bearing".to_owned(),
     };
     format!(
-        "A mass of {} kg at {} m/s against {where_to}. Bearing {bearing} mm, clearance {radial} mm, \
-         length {length} mm; nominal restitution {}. Closed forms, and the most that a run is off:\n\n{}\n",
+        "A mass of {} kg at {} m/s against {where_to}\nBearing {bearing} mm, clearance {radial} mm, length \
+         {length} mm; nominal restitution {}\nClosed forms, and the most that a run is off:\n\n{}\n",
         fall.mass,
         fall.speed,
         fall.restitution,

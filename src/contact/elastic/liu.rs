@@ -63,11 +63,21 @@ impl<S: Scalar> ElasticLaw<S> for Liu<S> {
         self.at(depth, depth.sqrt())
     }
 
-    /// The closed form loses its digits where δ is small beside c; this series does nowhere:
+    /// With x = δ/c,
     /// ```text
-    /// ∫₀^δ F dδ = (2/5) F δ Σ_k u^k Π_{i<k} (i + ½)/(i + 7/2),   u = δ/(c + δ)
+    /// ∫₀^δ F dδ = C c² [(2 x − 3) √(x (1 + x)) + 3 ln(√x + √(1 + x))]/4
+    ///           = (2/5) F δ Σ_k u^k Π_{i<k} (i + ½)/(i + 7/2),   u = δ/(c + δ)
     /// ```
+    /// of which the first loses its digits where δ is small beside c, and the second is slow where it
+    /// is large.
     fn energy(&self, depth: S) -> S {
+        if depth > self.radial {
+            let (x, one) = (depth / self.radial, S::one());
+            let (root, next) = (x.sqrt(), (one + x).sqrt());
+            let three = S::ratio(3, 1);
+            let sum = (x + x - three) * root * next + three * (root + next).ln();
+            return self.stiffness * self.radial * self.radial * sum * S::ratio(1, 4);
+        }
         let u = depth / (self.radial + depth);
         let (mut sum, mut term, mut k) = (S::one(), S::one(), 0);
         while term.to_f64() > 0.1 * S::EPSILON || k < 4 {
@@ -86,5 +96,24 @@ impl<S: Scalar> ElasticLaw<S> for Liu<S> {
     #[inline(always)]
     fn force_from_root(&self, root: S) -> Option<(S, S)> {
         Some(self.at(root * root, root))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scalar::Dual64;
+
+    #[test]
+    fn both_forms_of_the_energy_meet_and_have_the_force_for_a_slope() {
+        let law = Liu { stiffness: 1e9, radial: 5e-4 };
+        let [below, above] = [1.0 - 1e-15, 1.0 + 1e-15].map(|share| law.energy(share * 5e-4));
+        assert!((above / below - 1.0).abs() < 1e-14, "{below} {above}");
+        let dual = Liu { stiffness: Dual64::from_re(1e9), radial: Dual64::from_re(5e-4) };
+        for depth in [1e-4, 4e-4, 6e-4, 1e-2] {
+            let slope = dual.energy(Dual64::new(depth, 1.0)).eps;
+            let force = law.force(depth).0;
+            assert!((slope / force - 1.0).abs() < 1e-13, "{depth}: {slope} {force}");
+        }
     }
 }
