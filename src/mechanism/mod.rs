@@ -89,6 +89,8 @@ struct Evaluation<S> {
     /// Inner states, and their rates.
     z: Vec<S>,
     z_dot: Vec<S>,
+    /// The fastest relaxation of an inner state (1/s).
+    relaxation: f64,
     lambda: Vec<S>,
     powers: Vec<S>,
     /// Arms of each constraint's points.
@@ -116,6 +118,7 @@ impl<S: Scalar> Evaluation<S> {
             v_dot: vec![S::zero(); layout.coordinates],
             z: vec![S::zero(); inner_states],
             z_dot: vec![S::zero(); inner_states],
+            relaxation: 0.0,
             lambda: vec![S::zero(); layout.rows],
             powers: vec![S::zero(); Ledger::of(model).len()],
             arms: vec![[Vector::zero(); 2]; layout.constraints.len()],

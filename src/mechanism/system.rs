@@ -87,6 +87,10 @@ impl<S: Scalar> System<S> for Mechanism<S> {
         &self.now.z_dot
     }
 
+    fn inner_relaxation(&self) -> f64 {
+        self.now.relaxation
+    }
+
     fn lambda(&self) -> &[S] {
         &self.now.lambda
     }
