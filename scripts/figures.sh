@@ -25,4 +25,5 @@ draw docs/figures/closed-slowest "$out/readings/closed-slowest" --until 0.012 --
 "$freeplay" plot "$out/four-bar-c.h5" -o docs/figures --force --until 0.018 --only journal-path
 "$freeplay" plot --law lankarani-nikravesh,hunt-crossley,lee-wang,gonthier,flores,exact --text outlines \
     -o docs/figures --force
+"$freeplay" impact flores kelvin-voigt tsuji -o docs/figures --force
 node scripts/frame.mjs "$out/report.html" "#t=12.53&run=four-bar-c" docs/figures/mechanism.png

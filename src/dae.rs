@@ -179,6 +179,12 @@ pub trait System<S: Scalar> {
         &[]
     }
 
+    /// The fastest rate (1/s) at which an inner state goes to where it stays, at the state last
+    /// evaluated.
+    fn inner_relaxation(&self) -> f64 {
+        0.0
+    }
+
     /// λ at the state last evaluated (N, N m).
     fn lambda(&self) -> &[S];
 

@@ -21,8 +21,8 @@ pub struct Kind {
     pub also: Option<Rule>,
 }
 
-/// What must hold for several keys together: the key that is wrong, and why.
-pub type Rule = fn(&Values) -> Option<(&'static str, String)>;
+/// What must hold for several keys together: the keys that are wrong, and why.
+pub type Rule = fn(&Values) -> Vec<(&'static str, String)>;
 
 /// A key of a kind.
 #[derive(Debug)]
@@ -58,6 +58,10 @@ pub enum Takes {
     Word(&'static [&'static str]),
     /// A number, or a table with the `kind` of a course of time and its keys.
     Course,
+    /// A number, or one of some words.
+    NumberOr(Range, &'static [&'static str]),
+    /// A number for both materials that touch, or two, the bearing's first.
+    OfMaterials(Range),
 }
 
 /// Numbers that a key takes; all of them are finite. Of a vector they are its length.
@@ -71,6 +75,12 @@ pub enum Range {
     NotNegative,
     /// Other than zero.
     NotZero,
+    /// One or greater.
+    AtLeastOne,
+    /// What Poisson's ratio may be.
+    PoissonRatio,
+    /// What a restitution may be.
+    Restitution,
 }
 
 impl Range {
@@ -82,6 +92,9 @@ impl Range {
                 Range::Positive => x > 0.0,
                 Range::NotNegative => x >= 0.0,
                 Range::NotZero => x != 0.0,
+                Range::AtLeastOne => x >= 1.0,
+                Range::PoissonRatio => x > -1.0 && x <= 0.5,
+                Range::Restitution => x > 0.0 && x <= 1.0,
             }
     }
 
@@ -92,6 +105,9 @@ impl Range {
             Range::Positive => "positive",
             Range::NotNegative => "zero or positive",
             Range::NotZero => "other than zero",
+            Range::AtLeastOne => "at least 1",
+            Range::PoissonRatio => "greater than -1 and at most 0.5",
+            Range::Restitution => "greater than 0 and at most 1",
         }
     }
 }
@@ -120,6 +136,8 @@ pub enum Value {
     Pair([String; 2]),
     /// A course of time.
     Course(Box<Values>),
+    /// A constant of the bearing's and of the journal's material.
+    Materials([Decimal; 2]),
 }
 
 /// The kind of a part and the values of its keys.
@@ -178,6 +196,14 @@ impl Values {
         }
     }
 
+    /// The constant of the bearing's and of the journal's material, of a key.
+    pub fn of_materials<S: Scalar>(&self, key: &str) -> [S; 2] {
+        match self.get(key) {
+            Some(Value::Materials(constants)) => constants.each_ref().map(Decimal::value),
+            _ => [S::from_f64(f64::NAN); 2],
+        }
+    }
+
     /// The two numbers of a key.
     pub fn vector<S: Scalar>(&self, key: &str) -> [S; 2] {
         match self.get(key) {
@@ -209,6 +235,11 @@ impl Values {
             _ => None,
         }
     }
+}
+
+/// ` (m)`, or nothing for a pure number.
+pub fn in_brackets(unit: &str) -> String {
+    if unit.is_empty() { String::new() } else { format!(" ({unit})") }
 }
 
 /// The list of the kinds of a family of parts, one line a kind: the type that holds any of them,

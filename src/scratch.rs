@@ -100,6 +100,32 @@ fn a_course_of_one_s_own_drives() {
 }
 
 #[test]
+fn an_elastic_law_of_one_s_own_gives_way_as_far_as_its_energy_says() {
+    let text = format!(
+        r#"{BODY}
+        [joints.O]
+        kind = "revolute"
+        between = ["ground.O", "rod.C"]
+        [joints.O.clearance]
+        bearing_radius = 0.01
+        radial = 0.001
+        normal = {{ law = "hertz", elastic = "hardening", stiffness = 1e6, depth = 1e-4 }}
+        [start]
+        rod = {{ x = 0.0, y = 0.0, velocity_x = 0.1, fixed = true }}"#
+    );
+    for engine in ENGINES {
+        let contacts = run(&text, engine).contacts;
+        assert!(contacts.len() >= 10, "{}", contacts.len());
+        for contact in contacts.iter().filter(|contact| !contact.end.is_nan()) {
+            // ½ m v² = K δ² (½ + δ/3δ_1)
+            let d = contact.peak_penetration;
+            let energy = 1e6 * d * d * (0.5 + d / 3e-4);
+            assert!((energy / 2.5e-3 - 1.0).abs() < 1e-8, "{energy}");
+        }
+    }
+}
+
+#[test]
 fn laws_of_one_s_own_rebound_and_rub_as_they_say() {
     let text = r#"
         [ground]

@@ -162,7 +162,7 @@ fn what_no_run_begins_with(mechanism: &Mechanism<f64>) -> Vec<Complaint> {
     let model = mechanism.model();
     for (k, clearance) in model.clearances().iter().enumerate() {
         let depth = start.clearances[k].penetration;
-        let allowed = clearance.maximum_penetration * clearance.journal_radius;
+        let allowed = clearance.believed_depth();
         if !(depth <= allowed) {
             let key = KeyPath::new(["joints", &model.names().clearances[k], "clearance"]);
             let law = format!("its contact law means nothing beyond {allowed:.4e} m");

@@ -109,8 +109,17 @@ fn laws_md_tells_every_law_and_what_it_rebounds_at() {
             assert!(row.contains(&rebound), "{word} at {e}: {rebound} in {row}");
         }
     }
-    for kind in freeplay::friction::KINDS {
-        assert!(text.contains(&format!("| `{}` |", kind.word)), "{}", kind.word);
+    let sources = read("docs/bibliography.md");
+    for (key, kinds) in [
+        ("elastic", freeplay::contact::elastic::KINDS),
+        ("law", freeplay::contact::viscous::KINDS),
+        ("law", freeplay::friction::KINDS),
+    ] {
+        for kind in kinds {
+            assert!(text.contains(&format!("| `{}` |", kind.word)), "{}", kind.word);
+            let cited = format!("| `{key} = \"{}\"` |", kind.word);
+            assert!(sources.contains(&cited), "docs/bibliography.md has no row {cited}");
+        }
     }
 }
 
@@ -265,8 +274,10 @@ fn schema_in<'a>(whole: &'a Value, at: &'a Value) -> &'a Value {
 /// The schema of one kind of a part.
 fn of_kind<'a>(family: &'a Value, kind: &str) -> &'a Value {
     let kinds = family["oneOf"].as_array().unwrap();
-    let is = |schema: &&Value, key: &str| schema["properties"][key]["const"] == kind;
-    kinds.iter().find(|schema| is(schema, "kind") || is(schema, "law")).unwrap()
+    let is = |schema: &&Value| {
+        ["kind", "elastic", "law"].iter().any(|key| schema["properties"][key]["const"] == kind)
+    };
+    kinds.iter().find(is).unwrap()
 }
 
 fn schema() -> Value {
@@ -314,6 +325,7 @@ fn the_schema_of_cases_has_the_keys_that_the_program_reads() {
             "joints.A" => of_kind(in_schema, "revolute"),
             "drives.crank" => of_kind(in_schema, "speed"),
             "loads.gravity" => of_kind(in_schema, "gravity"),
+            "joints.A.clearance.normal" => of_kind(in_schema, "power"),
             "joints.A.clearance.friction" => of_kind(in_schema, "ambrosio"),
             _ => in_schema,
         };
@@ -339,6 +351,7 @@ fn the_schema_of_cases_has_the_words_that_the_program_reads() {
     for key in [
         "joints.A.clearance.tension",
         "joints.A.clearance.normal.law",
+        "joints.A.clearance.normal.elastic",
         "joints.A.clearance.normal.stiffness",
         "run.sampling",
         "solver.engine",
@@ -352,7 +365,14 @@ fn the_schema_of_cases_has_the_words_that_the_program_reads() {
         let keys: Vec<&str> = key.split('.').collect();
         let at = schema_at(&schema, &keys).unwrap();
         let words = at.get("enum").unwrap_or_else(|| &at["oneOf"][1]["enum"]);
-        assert_eq!(words, &serde_json::json!(known), "{key} in the schema");
+        let kinds: Value = freeplay::contact::elastic::KINDS.iter().map(|kind| kind.word).collect();
+        let words = if key.ends_with(".elastic") { &kinds } else { words };
+        // laws with a damping of their own have a schema each
+        let mut words = words.as_array().unwrap().clone();
+        if key.ends_with("normal.law") {
+            words.extend(freeplay::contact::viscous::KINDS.iter().map(|kind| kind.word.into()));
+        }
+        assert_eq!(Value::from(words), serde_json::json!(known), "{key} in the schema");
     }
 }
 
@@ -376,6 +396,8 @@ fn the_example_of_every_kind_has_its_keys() {
         freeplay::joint::KINDS,
         freeplay::load::KINDS,
         freeplay::course::KINDS,
+        freeplay::contact::elastic::KINDS,
+        freeplay::contact::viscous::KINDS,
         freeplay::friction::KINDS,
     ];
     for kind in families.concat() {
@@ -388,7 +410,7 @@ fn the_example_of_every_kind_has_its_keys() {
 #[test]
 fn the_examples_of_extending_are_the_files_that_are_compiled() {
     let text = read("docs/extending.md");
-    let files = ["joint", "load", "course", "contact/damping", "friction"];
+    let files = ["joint", "load", "course", "contact/damping", "contact/elastic", "friction"];
     for file in files.map(|room| format!("src/{room}/scratch.rs")) {
         assert!(text.contains(&format!("`{file}`:\n\n```rust\n{}```", read(&file))), "{file}");
     }

@@ -223,6 +223,30 @@ fn a_run_in_its_horizon_holds_to_the_end() {
 }
 
 /// What the companion could not follow is not known, and neither true nor gone.
+/// Bristles that slip relax so fast that an explicit step may be at the edge of its stability: what the
+/// derivative then grows by is no growth of errors. Known in advance: that both engines agree.
+#[test]
+fn bristles_that_slip_do_not_end_a_horizon() {
+    for friction in [
+        "{ law = \"dahl\", coefficient = 0.1, stiffness = 1e4 }",
+        "{ law = \"lugre\", coefficient = 0.1, static = 0.15, stiffness = 1e4, damping = 10.0, stribeck = 1e-2 }",
+    ] {
+        let friction = format!("joints.A.clearance.friction={friction}");
+        let normal = "joints.A.clearance.normal.restitution=0.7";
+        let of = |engine: &str| {
+            let set = [friction.as_str(), normal, "run.duration=0.012", engine];
+            simulated::case("cases/four-bar-a-friction.toml", &set)
+        };
+        let [ida, explicit] = ["solver.engine=ida", "solver.engine=explicit"].map(of);
+        let ends =
+            [&ida, &explicit].map(|case| *simulated::simulate(case).last().bodies.last().unwrap());
+        let [a, b] = ends.map(|body| body.angular_velocity);
+        assert!((a / b - 1.0).abs() < 1e-6, "{friction}: {a} {b}");
+        let told = followed(&ida, None).digits.last().unwrap().state;
+        assert!(told > 5.0, "{friction}: {told} digits are told of");
+    }
+}
+
 #[test]
 fn a_companion_that_is_lost_says_so() {
     let path = format!("{}/cases/four-bar-c.toml", root().display());

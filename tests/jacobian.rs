@@ -4,9 +4,12 @@
 mod simulated;
 
 use freeplay::clearance::{Contact, Mode};
+use freeplay::contact::{Damping, elastic, viscous};
 use freeplay::dae::{Dae, State, System};
+use freeplay::friction;
 use freeplay::mechanism::Mechanism;
 use freeplay::model::Model;
+use freeplay::parameter::Kind;
 use freeplay::plane::Vector;
 use freeplay::scalar::{Dual64, Scalar};
 use nalgebra::DMatrix;
@@ -63,7 +66,7 @@ fn modes<S: Scalar>(mechanism: &Mechanism<S>, clearance: usize) -> Vec<Mode<S>> 
     let mut modes = vec![Mode::Flight];
     for slip in [-1.0, -5e-3, 0.0, 5e-3, 1.0] {
         for (rate, pulling) in [(2.0, false), (1e-4, false), (0.5, true)] {
-            let contact = law.begin(S::from_f64(rate), S::from_f64(slip), S::zero());
+            let contact = law.begin(S::zero(), S::from_f64(rate), S::from_f64(slip), S::zero());
             modes.push(Mode::Contact(Contact { pulling, ..contact }));
         }
     }
@@ -106,8 +109,8 @@ fn assert_agreement(what: &str, found: &DMatrix<f64>, exact: &DMatrix<f64>) {
 }
 
 /// Trials of a mechanism in all its modes; says in how many of them journals touched.
-fn assert_jacobian(path: &str) -> usize {
-    let description = case(path, &[]).description;
+fn assert_jacobian(path: &str, set: &[&str]) -> usize {
+    let description = case(path, set).description;
     let mut real = Mechanism::<f64>::new(Model::new(&description).unwrap()).unwrap();
     let mut dual = Mechanism::<Dual64>::new(Model::new(&description).unwrap()).unwrap();
     if real.coordinates() == 0 {
@@ -126,9 +129,13 @@ fn assert_jacobian(path: &str) -> usize {
             dual.set_mode(k, of_dual[choice]);
         }
         let trial = Trial::new(&real, &mut numbers);
-        let (found, exact) = (by_hand(&mut real, &trial), by_dual_numbers(&mut dual, &trial));
-        assert_agreement(&format!("{path}, trial {round}"), &found, &exact);
         let mut residual = vec![0.0; trial.y.len()];
+        // a piece of a law far beyond its edges may grow beyond all numbers
+        if real.residual(trial.t, &trial.y, &trial.yp, &mut residual).is_err() {
+            continue;
+        }
+        let (found, exact) = (by_hand(&mut real, &trial), by_dual_numbers(&mut dual, &trial));
+        assert_agreement(&format!("{path} {set:?}, trial {round}"), &found, &exact);
         real.residual(trial.t, &trial.y, &trial.yp, &mut residual).unwrap();
         touched += (0..clearances)
             .filter(|k| real.contact_rates(*k).is_some_and(|rates| rates.force != 0.0))
@@ -150,10 +157,37 @@ fn every_column_is_that_of_dual_numbers_in_every_mode_of_every_case() {
     let cases = [cases_in("cases"), cases_in("tests/cases"), cases_in("tests/kinds")].concat();
     assert!(cases.len() >= 14, "{cases:?}");
     for path in cases {
-        let touched = assert_jacobian(&path);
+        let touched = assert_jacobian(&path, &[]);
         let clearances =
             !case(&path, &[]).description.joints.iter().all(|joint| joint.clearance.is_none());
         assert!(touched >= 10 || !clearances, "{path}: {touched} contacts with a force");
+    }
+}
+
+/// The table that the example of a law has for a key.
+fn table_of<'a>(kind: &'a Kind, key: &str) -> &'a str {
+    let opening = format!("\n{key} = ");
+    let (_, table) = kind.example.split_once(&opening).expect("an example with a table");
+    table.trim()
+}
+
+#[test]
+fn every_column_is_that_of_dual_numbers_with_every_law() {
+    let weights = Damping::ALL.iter().map(|(word, law)| {
+        let restitution = if law.about().restitution { "restitution = 0.7, " } else { "" };
+        ("normal", format!("{{ law = \"{word}\", {restitution}stiffness = 1e10 }}"))
+    });
+    let of = |key: &'static str, kinds: &'static [&Kind]| {
+        kinds.iter().map(move |kind| (key, table_of(kind, key).to_owned()))
+    };
+    let laws = weights
+        .chain(of("normal", elastic::KINDS))
+        .chain(of("normal", viscous::KINDS))
+        .chain(of("friction", friction::KINDS));
+    for (key, table) in laws {
+        let set = format!("joints.A.clearance.{key}={table}");
+        let touched = assert_jacobian("cases/four-bar-a-friction.toml", &[&set]);
+        assert!(touched >= 10, "{table}: {touched} contacts with a force");
     }
 }
 

@@ -112,6 +112,62 @@ fn laws_are_drawn_without_a_run() {
     assert_eq!(plot(&[&result], &other, &["--law", "all"]).status.code(), Some(2));
 }
 
+/// What a command prints in JSON.
+fn json(arguments: &[&str]) -> serde_json::Value {
+    let printed = freeplay(arguments);
+    assert!(printed.status.success(), "{printed:?}");
+    serde_json::from_slice(&printed.stdout).unwrap()
+}
+
+#[test]
+fn every_law_falls_as_its_closed_form_says_on_both_engines() {
+    let folder = folder();
+    let output = folder.path().join("figures");
+    let bench = ["impact", "--elastic", "all", "--json", "-o", output.to_str().unwrap()];
+    let told = json(&bench);
+    let impacts = told["impacts"].as_array().unwrap();
+    let menu = json(&["laws", "--restitution", "0.7", "--json"]);
+    let laws = |list: &str| menu[list].as_array().unwrap().clone();
+    let all = laws("normal").len() * laws("elastic").len() + laws("own_damping").len();
+    assert!(all >= 80 && impacts.len() == all, "{} impacts of {all}", impacts.len());
+    for impact in impacts {
+        for engine in ["ida", "explicit"] {
+            let off = impact["engines"][engine]["off"].as_f64().unwrap();
+            assert!(off < 1e-9, "{impact:#}");
+        }
+        let nominal = laws("normal").into_iter().find(|law| law["law"] == impact["law"]);
+        let achieved = nominal.map(|law| law["impacts"][0]["achieved"].as_f64().unwrap());
+        let rebound = impact["closed_form"]["rebound"].as_f64().unwrap();
+        assert!(achieved.is_none_or(|achieved| (achieved - rebound).abs() < 1e-12), "{impact:#}");
+    }
+    assert_eq!(files_in(&output), ["impact-loops.svg"]);
+    let svg = std::fs::read_to_string(output.join("impact-loops.svg")).unwrap();
+    assert!(svg.contains("kelvin-voigt") && svg.contains("exact, johnson"));
+    // figures stay unless told otherwise
+    assert_eq!(freeplay(&bench).status.code(), Some(3));
+    // hard to come by where nearly all is lost: the damping then all but cancels the spring
+    let slow = json(&["impact", "--restitution", "0.2", "--json"]);
+    for impact in slow["impacts"].as_array().unwrap() {
+        let off = impact["engines"]["explicit"]["off"].as_f64().unwrap();
+        assert!(off < 1e-9, "{impact:#}");
+    }
+    // beside the middle the closed form is no longer exact
+    let aside = json(&["impact", "flores", "--aside", "0.5", "--json"]);
+    let off = aside["impacts"][0]["engines"]["explicit"]["off"].as_f64().unwrap();
+    assert!(off > 1e-3 && off < 0.1, "{off}");
+    for (wrong, words) in [
+        (&["flors"][..], "did you mean \"flores\"?"),
+        (&["flores", "--elastic", "jonson"], "did you mean \"johnson\"?"),
+        (&["--speed", "0"], "greater than 0"),
+        (&["--aside", "1"], "less than 1"),
+        (&["--restitution", "1.5"], "greater than 0 and at most 1, is 1.5"),
+    ] {
+        let refused = freeplay(&[&["impact"], wrong].concat());
+        assert_eq!(refused.status.code(), Some(2), "{refused:?}");
+        assert!(crate::told(&refused).contains(words), "{refused:?}");
+    }
+}
+
 #[test]
 fn figures_can_be_chosen_by_name_and_by_kind() {
     let folder = folder();

@@ -67,7 +67,7 @@ fn lock(case: &Case, turn: &Turn) -> Option<Note> {
 /// A contact that the loads known beforehand press deeper than its law is believed for.
 fn too_soft(mechanism: &Mechanism<f64>, touch: &Touch) -> Option<Note> {
     let clearance = &mechanism.model().clearances()[touch.clearance];
-    let allowed = clearance.maximum_penetration * clearance.journal_radius;
+    let allowed = clearance.believed_depth();
     let (depth, what) = match touch.pressed {
         Some((force, depth)) if depth > touch.depth => (depth, format!("a force of {force:.3e} N")),
         _ => (touch.depth, format!("an impact at {:.3e} m/s", touch.speed)),

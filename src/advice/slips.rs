@@ -100,8 +100,8 @@ fn clearance_notes(
         );
         notes.push(Note::new(format!("{key}.radial"), text));
     }
-    let young = clearance.normal.young.iter().flat_map(|young| [&young.bearing, &young.journal]);
-    if let Some(young) = young.into_iter().find(|young| young.to_f64() < SOFTEST) {
+    let young = clearance.normal.elastic.of_materials::<f64>("young");
+    if let Some(young) = young.into_iter().find(|young| *young < SOFTEST) {
         let text =
             format!("{young} Pa is softer than rubber; metals have 4e10 to 4e11 Pa (is it GPa?)");
         notes.push(Note::new(format!("{key}.normal.young"), text));

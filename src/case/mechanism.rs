@@ -1,22 +1,15 @@
 //! Case file to [`Description`]: which keys describe ground, bodies, joints, drives, loads, start.
 //!
-//! Joints, courses of drives, loads and friction laws say themselves which keys they take; of the
-//! normal force the keys stand here.
+//! Joints, courses of drives, loads, elastic and friction laws say themselves which keys they take.
 
 use super::table_reader::TableReader;
-use crate::contact::Damping;
+use crate::contact::{Damping, elastic, viscous};
 use crate::model::{
-    BodyDescription, ClearanceDescription, Description, DriveDescription, JointDescription,
-    LoadDescription, NamedPoint, NormalDescription, StartDescription, StiffnessDescription,
-    Tension,
+    BodyDescription, ClearanceDescription, DampingDescription, Description, DriveDescription,
+    JointDescription, LoadDescription, NamedPoint, NormalDescription, StartDescription, Tension,
 };
-use crate::parameter::Values;
+use crate::parameter::{Kind, Values};
 use crate::{course, friction, joint, load};
-
-const STIFFNESSES: [(&str, StiffnessDescription); 2] = [
-    ("hertz-printed", StiffnessDescription::HertzPrinted),
-    ("hertz-internal", StiffnessDescription::HertzInternal),
-];
 
 const TENSIONS: [(&str, Tension); 2] = [("keep", Tension::Keep), ("cut", Tension::Cut)];
 
@@ -68,26 +61,39 @@ fn clearance(keys: &mut TableReader) -> ClearanceDescription {
     }
 }
 
+/// What the word of a normal force stands for.
+#[derive(Debug, Clone, Copy)]
+enum Law {
+    Weight(Damping),
+    Viscous(&'static Kind),
+}
+
 fn normal(keys: &mut TableReader) -> NormalDescription {
-    let law = keys.choice("law", Damping::ALL, None);
-    let stiffness = keys.number_or_choice(
-        "stiffness",
-        "N/mⁿ",
-        &STIFFNESSES,
-        None,
-        StiffnessDescription::Number,
-    );
-    if law.is_none() || stiffness.is_none() {
+    let weights = Damping::ALL.iter().map(|(word, law)| (*word, Law::Weight(*law)));
+    let viscous = viscous::KINDS.iter().map(|kind| (kind.word, Law::Viscous(kind)));
+    let laws: Vec<(&str, Law)> = weights.chain(viscous).collect();
+    let chosen = keys.choice("law", &laws, None);
+    let (mut restitution, mut achieved_restitution) = (None, None);
+    let law = match chosen {
+        Some(Law::Viscous(kind)) => Some(DampingDescription::Viscous(keys.values(kind))),
+        chosen => {
+            restitution = keys.optional("restitution", "");
+            achieved_restitution = keys.optional("achieved_restitution", "");
+            match chosen {
+                Some(Law::Weight(damping)) => Some(DampingDescription::Weight(damping)),
+                _ => None,
+            }
+        }
+    };
+    let elastic = keys.part("elastic", elastic::KINDS, Some(elastic::POWER.word));
+    if law.is_none() || elastic.is_none() {
         keys.leave_unchecked(); // which other keys are wanted hangs on these two
     }
     NormalDescription {
-        law: law.unwrap_or(Damping::Hertz),
-        restitution: keys.optional("restitution", ""),
-        achieved_restitution: keys.optional("achieved_restitution", ""),
-        stiffness: stiffness.unwrap_or(StiffnessDescription::HertzPrinted),
-        young: keys.optional("young", "Pa"),
-        poisson: keys.optional("poisson", ""),
-        exponent: keys.number_or("exponent", "", "1.5"),
+        law: law.unwrap_or(DampingDescription::Weight(Damping::Hertz)),
+        restitution,
+        achieved_restitution,
+        elastic: elastic.unwrap_or_else(|| Values::new(elastic::POWER)),
     }
 }
 

@@ -1,7 +1,7 @@
 //! The JSON Schema of case files, and the same in tables. Joints, drives, loads and courses come from
 //! what their kinds say of themselves; the other keys stand in `schema.json`.
 
-use crate::contact::Damping;
+use crate::contact::{Damping, elastic, viscous};
 use crate::parameter::{Key, Kind, Otherwise, Range, Takes};
 use crate::{course, friction, joint, load};
 use serde_json::{Map, Value, json};
@@ -9,6 +9,8 @@ use serde_json::{Map, Value, json};
 /// The schema of what does not come in kinds.
 const REST: &str = include_str!("schema.json");
 
+const NORMAL: &str =
+    "Law of the normal force: of its damping and, by `elastic`, of its elastic part";
 const FRICTION: &str = "Law of the tangential force; left out: none";
 
 /// The JSON Schema (draft 07) of case files.
@@ -19,22 +21,62 @@ pub fn schema() -> Value {
         ("drive", "A drive", one_of("kind", course::KINDS, |_| drive_keys())),
         ("load", "A load", one_of("kind", load::KINDS, |_| Map::new())),
         ("course", "A course of time", one_of("kind", course::KINDS, |_| Map::new())),
+        ("normal", NORMAL, one_of("elastic", elastic::KINDS, |_| normal_keys())),
         ("friction", FRICTION, one_of("law", friction::KINDS, |_| Map::new())),
     ];
     for (name, about, alternatives) in kinds {
         schema["$defs"][name] = json!({ "description": about, "oneOf": alternatives });
     }
-    let laws: Vec<&str> = Damping::ALL.iter().map(|(word, _)| *word).collect();
-    schema["$defs"]["normal"]["properties"]["law"]["enum"] = json!(laws);
-    // the kind of a drive may be left out
-    let drives = schema["$defs"]["drive"]["oneOf"].as_array_mut();
-    for drive in drives.into_iter().flatten() {
-        if drive["properties"]["kind"]["const"] == "speed" {
-            drive["properties"]["kind"]["default"] = json!("speed");
-            drive["required"] = json!(["joint"]);
+    let viscous = one_of("law", viscous::KINDS, |_| Map::new());
+    if let Some(alternatives) = schema["$defs"]["normal"]["oneOf"].as_array_mut() {
+        // they go with the power law alone
+        let power = alternatives[0]["properties"].clone();
+        alternatives.extend(viscous.into_iter().map(|mut law| {
+            for (key, value) in power.as_object().into_iter().flatten() {
+                let other = ["law", "restitution", "achieved_restitution"].contains(&key.as_str());
+                if !other {
+                    law["properties"][key] = value.clone();
+                }
+            }
+            if let Some(required) = law["required"].as_array_mut() {
+                required.push(json!("stiffness"));
+            }
+            law
+        }));
+    }
+    default_kind(&mut schema["$defs"]["drive"], "kind", "speed");
+    default_kind(&mut schema["$defs"]["normal"], "elastic", elastic::POWER.word);
+    schema
+}
+
+/// Lets the key that chooses a kind be left out, where one kind is the default.
+fn default_kind(family: &mut Value, chooses: &str, word: &str) {
+    for kind in family["oneOf"].as_array_mut().into_iter().flatten() {
+        if kind["properties"][chooses]["const"] == word {
+            kind["properties"][chooses]["default"] = json!(word);
+            if let Some(required) = kind["required"].as_array_mut() {
+                required.retain(|key| key != chooses);
+            }
         }
     }
-    schema
+}
+
+/// Keys of a normal force that are those of no elastic law.
+fn normal_keys() -> Map<String, Value> {
+    let laws: Vec<&str> = Damping::ALL.iter().map(|(word, _)| *word).collect();
+    let restitution = |about: &str| json!({ "type": "number", "description": about, "exclusiveMinimum": 0, "maximum": 1 });
+    let nominal = "Restitution c_e, as the law has it (`freeplay laws` tells what an impact then \
+                   rebounds at); none for hertz";
+    let achieved = "In place of restitution: what one impact by itself is to rebound at, over its \
+                    speed";
+    Map::from_iter([
+        (
+            "law".to_owned(),
+            json!({ "type": "string", "description": "The law of the damping", "enum": laws }),
+        ),
+        ("restitution".to_owned(), restitution(nominal)),
+        ("achieved_restitution".to_owned(), restitution(achieved)),
+    ])
 }
 
 /// Keys of a joint that are those of no kind.
@@ -64,7 +106,8 @@ fn one_of(
         keys.insert(chooses.into(), json!({ "const": kind.word, "description": kind.title }));
         let others = before(kind);
         let mut required = vec![chooses];
-        required.extend(others.keys().filter(|key| *key == "joint").map(|_| "joint"));
+        let needed = ["joint", "law"].into_iter().filter(|key| others.contains_key(*key));
+        required.extend(needed);
         keys.extend(others.clone());
         for key in kind.keys {
             keys.insert(key.name.into(), value(key));
@@ -94,6 +137,10 @@ fn value(key: &Key) -> Value {
         Takes::Point | Takes::Body => json!({ "type": "string" }),
         Takes::Word(words) => json!({ "type": "string", "enum": words }),
         Takes::Course => json!({ "oneOf": [{ "type": "number" }, { "$ref": "#/$defs/course" }] }),
+        Takes::NumberOr(range, words) => {
+            json!({ "oneOf": [number(range), { "type": "string", "enum": words }] })
+        }
+        Takes::OfMaterials(range) => json!({ "oneOf": [number(range), pair("number")] }),
     };
     let unit = if key.unit.is_empty() { String::new() } else { format!(" ({})", key.unit) };
     schema["description"] = json!(format!("{}{unit}", key.about));
@@ -109,6 +156,13 @@ fn number(range: Range) -> Value {
         Range::Positive => json!({ "type": "number", "exclusiveMinimum": 0 }),
         Range::NotNegative => json!({ "type": "number", "minimum": 0 }),
         Range::NotZero => json!({ "type": "number", "not": { "const": 0 } }),
+        Range::AtLeastOne => json!({ "type": "number", "minimum": 1 }),
+        Range::Restitution => {
+            json!({ "type": "number", "exclusiveMinimum": 0, "maximum": 1 })
+        }
+        Range::PoissonRatio => {
+            json!({ "type": "number", "exclusiveMinimum": -1, "maximum": 0.5 })
+        }
     }
 }
 
@@ -127,7 +181,9 @@ pub fn tables() -> String {
     table(&mut text, "Bodies: `[bodies.NAME]`", "", &defs["body"]);
     kinds(&mut text, "Joints: `[joints.NAME]`", &defs["joint"], joint::KINDS);
     table(&mut text, "Clearance: `[joints.NAME.clearance]`", "", &defs["clearance"]);
-    table(&mut text, "Normal force: `normal` of a clearance", "", &defs["normal"]);
+    let normal =
+        "Normal force: `normal` of a clearance, by its elastic law, or by a law of its own";
+    kinds(&mut text, normal, &defs["normal"], &[elastic::KINDS, viscous::KINDS].concat());
     kinds(&mut text, "Friction: `friction` of a clearance", &defs["friction"], friction::KINDS);
     kinds(&mut text, "Drives: `[drives.NAME]`", &defs["drive"], course::KINDS);
     kinds(&mut text, "Loads: `[loads.NAME]`", &defs["load"], load::KINDS);

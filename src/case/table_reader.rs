@@ -2,9 +2,7 @@
 
 use super::DefaultTaken;
 use crate::course;
-use crate::model::{
-    Complaint, KeyPath, MOST_TOLD, OfMaterials, did_you_mean, in_brackets, shortened,
-};
+use crate::model::{Complaint, KeyPath, MOST_TOLD, did_you_mean, in_brackets, shortened};
 use crate::parameter::{self, Key, Kind, Otherwise, Takes, Values};
 use crate::scalar::Decimal;
 use std::collections::HashSet;
@@ -79,17 +77,19 @@ impl FromItem for [Decimal; 2] {
     }
 }
 
+/// A constant of the bearing's and of the journal's material.
+struct OfMaterials([Decimal; 2]);
+
 impl FromItem for OfMaterials {
     const EXPECTED: &'static str = "a number or two [bearing, journal]";
 
     fn from_item(item: &Item) -> Option<Self> {
         let both = || Decimal::from_item(item).map(|both| [both.clone(), both]);
-        let [bearing, journal] = pair(item, number).or_else(both)?;
-        Some(OfMaterials { bearing, journal })
+        pair(item, number).or_else(both).map(OfMaterials)
     }
 
     fn placeholder() -> Self {
-        OfMaterials { bearing: Decimal::placeholder(), journal: Decimal::placeholder() }
+        OfMaterials([Decimal::placeholder(), Decimal::placeholder()])
     }
 }
 
@@ -365,14 +365,18 @@ impl<'d> TableReader<'d, '_> {
         let words: Vec<(&str, &Kind)> = kinds.iter().map(|kind| (kind.word, *kind)).collect();
         let chosen = self.choice(key, &words, default);
         self.any_key |= chosen.is_none(); // which keys an unknown kind takes is not known
-        let kind = chosen?;
+        chosen.map(|kind| self.values(kind))
+    }
+
+    /// The values of the keys of a kind.
+    pub fn values(&mut self, kind: &'static Kind) -> Values {
         let mut values = Values::new(kind);
         for key in kind.keys {
             if let Some(value) = self.value(key) {
                 values = values.with(key.name, value);
             }
         }
-        Some(values)
+        values
     }
 
     /// The value of a key of a kind; what cannot be read has a placeholder.
@@ -409,6 +413,18 @@ impl<'d> TableReader<'d, '_> {
                 )
             }
             Takes::Course => parameter::Value::Course(Box::new(self.course(name, unit))),
+            Takes::NumberOr(_, words) => {
+                let words: Vec<_> = words
+                    .iter()
+                    .map(|word| (*word, parameter::Value::Text((*word).to_owned())))
+                    .collect();
+                let number = parameter::Value::Number;
+                let read = self.number_or_choice(name, unit, &words, None, number);
+                read.unwrap_or_else(|| parameter::Value::Text(String::new()))
+            }
+            Takes::OfMaterials(_) => {
+                parameter::Value::Materials(self.required::<OfMaterials>(name, unit).0)
+            }
         })
     }
 

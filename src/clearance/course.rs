@@ -50,7 +50,7 @@ impl<S: Scalar> Clearance<S> {
         let rates = self.rates(gap, bodies.motions);
         let second = self.second_rates(gap, &rates, bodies.motions, bodies.accelerations);
         let value = self.event_value(mode, slot, gap, || rates).to_f64();
-        let rate = self.event_rate(mode, slot, rates.rate, second).to_f64();
+        let rate = self.event_rate(mode, slot, gap, rates.rate, second).to_f64();
         let grain = self.rate_grain(slot, mode, &rates, bodies);
         Course { value, rate, grain, noise: S::EPSILON * (ROUNDINGS + 4.0 * grain), ..Course::NONE }
     }
@@ -114,7 +114,7 @@ impl<S: Scalar> Clearance<S> {
             + rates.sweep.abs();
         let per_speed = match (slot, mode, &self.friction) {
             (EventSlot::Pull, Mode::Contact(contact), _) => {
-                self.normal.damping_weight() * contact.inverse_impact_rate
+                self.normal.pressing_slope(contact.inverse_impact_rate)
             }
             (_, _, Some(friction)) => S::one() / friction.slip_scale(),
             _ => S::zero(),

@@ -11,8 +11,10 @@ pub use gap::{Gap, GapRates, GapSlopes};
 pub use mode::{Contact, EventSlot, Mode};
 
 use crate::contact::NormalLaw;
+use crate::contact::elastic::ElasticLaw;
 use crate::friction::Friction;
 use crate::joint::Pair;
+use crate::scalar::Scalar;
 
 /// A revolute joint with clearance: bearing on body `i`, journal on body `j`.
 #[derive(Debug, Clone, Copy)]
@@ -36,4 +38,22 @@ pub struct Clearance<S> {
     /// Largest penetration that the law is believed for, as a share of the journal's radius
     /// (ruling `maximum_penetration`).
     pub maximum_penetration: f64,
+}
+
+impl<S: Scalar> Clearance<S> {
+    /// The depth (m) up to which the contact law is believed: a share of the journal's radius, or
+    /// where the elastic law ends.
+    pub fn believed_depth(&self) -> f64 {
+        let share = self.maximum_penetration * self.journal_radius.to_f64();
+        share.min(self.normal.elastic().deepest())
+    }
+
+    /// What sets that depth, in words.
+    pub fn believed_because(&self) -> String {
+        let share = self.maximum_penetration;
+        match self.normal.elastic().deepest() > self.believed_depth() {
+            true => format!("{share} of the journal's radius (maximum_penetration)"),
+            false => "where the formula of its elastic part ends".to_owned(),
+        }
+    }
 }

@@ -5,6 +5,7 @@
 //! sides, so nothing jumps but the mode.
 
 use super::{Clearance, Gap, GapRates};
+use crate::contact::Penetration;
 use crate::dae::{Direction, Watch};
 use crate::friction::{Branch, FrictionLaw};
 use crate::scalar::{Scalar, bits};
@@ -46,7 +47,7 @@ pub enum EventSlot {
     LowerEdge,
     /// The slip below the upper edge of its branch, in units of the law's own.
     UpperEdge,
-    /// 1 + a δ̇/δ̇⁽⁻⁾, negative where the law pulls.
+    /// Negative where the law pulls: 1 + a δ̇/δ̇⁽⁻⁾, or what other laws have for it.
     Pull,
 }
 
@@ -59,21 +60,22 @@ impl<S: Scalar> Clearance<S> {
         }
         // pulling changes the force where tension is cut, and ends friction in any case
         let matters = self.cut_tension || self.friction.is_some();
-        if matters && self.normal.damping_weight() > S::zero() {
+        if matters && self.normal.can_pull() {
             slots.push(EventSlot::Pull);
         }
         slots
     }
 
-    /// A contact that begins at a rate (m/s) and slip (m/s), with the slip's acceleration (m/s²).
-    pub fn begin(&self, rate: S, slip: S, slip_acceleration: S) -> Contact<S> {
+    /// A contact that begins at a depth (m), a rate (m/s) and a slip (m/s), with the slip's acceleration
+    /// (m/s²).
+    pub fn begin(&self, depth: S, rate: S, slip: S, slip_acceleration: S) -> Contact<S> {
         let inverse_impact_rate = S::one() / rate.max(self.minimum_impact_rate);
-        let factor = S::one() + self.normal.damping_weight() * rate * inverse_impact_rate;
+        let pressing = self.normal.pressing(Penetration { depth, rate, inverse_impact_rate });
         Contact {
             impact_rate: rate,
             inverse_impact_rate,
             branch: self.friction.map(|friction| friction.branch(slip, slip_acceleration)),
-            pulling: factor < S::zero(),
+            pulling: pressing < S::zero(),
         }
     }
 
@@ -116,7 +118,7 @@ impl<S: Scalar> Clearance<S> {
             (_, EventSlot::Depth) => gap.depth / self.radial,
             (Mode::Flight, _) => S::one(),
             (Mode::Contact(contact), EventSlot::Pull) => {
-                self.normal.factor(self.penetration(contact, gap, rates().rate))
+                self.normal.pressing(self.penetration(contact, gap, rates().rate))
             }
             (Mode::Contact(contact), edge) => match (self.edge(contact, edge), &self.friction) {
                 (Some(at), Some(friction)) => {
@@ -129,12 +131,19 @@ impl<S: Scalar> Clearance<S> {
     }
 
     /// Time derivative (1/s) of an event function, from δ̇, δ̈ and v̇_T (m/s, m/s²).
-    pub fn event_rate(&self, mode: &Mode<S>, slot: EventSlot, rate: S, second: (S, S)) -> S {
+    pub fn event_rate(
+        &self,
+        mode: &Mode<S>,
+        slot: EventSlot,
+        gap: &Gap<S>,
+        rate: S,
+        second: (S, S),
+    ) -> S {
         match (mode, slot) {
             (_, EventSlot::Depth) => rate / self.radial,
             (Mode::Flight, _) => S::zero(),
             (Mode::Contact(contact), EventSlot::Pull) => {
-                self.normal.damping_weight() * second.0 * contact.inverse_impact_rate
+                self.normal.pressing_rate(self.penetration(contact, gap, rate), second.0)
             }
             (Mode::Contact(contact), edge) => match (self.edge(contact, edge), &self.friction) {
                 (Some(_), Some(friction)) => {
@@ -152,12 +161,13 @@ impl<S: Scalar> Clearance<S> {
         &self,
         mode: &Mode<S>,
         slot: EventSlot,
+        gap: &Gap<S>,
         rates: impl FnOnce() -> (GapRates<S>, S),
     ) -> Mode<S> {
         match (mode, slot) {
             (Mode::Flight, EventSlot::Depth) => {
                 let (rates, slip_acceleration) = rates();
-                Mode::Contact(self.begin(rates.rate, rates.slip, slip_acceleration))
+                Mode::Contact(self.begin(gap.depth, rates.rate, rates.slip, slip_acceleration))
             }
             (Mode::Contact(_), EventSlot::Depth) | (Mode::Flight, _) => Mode::Flight,
             (Mode::Contact(contact), EventSlot::Pull) => {

@@ -3,8 +3,11 @@
 use super::{CaseArguments, Failure};
 use crate::advice::{self, Note, Touch, Turn};
 use crate::case::{AbsoluteTolerance, Case, EngineName, NormName, Precision, SolverPlan};
-use crate::contact;
+use crate::clearance::Clearance;
+use crate::contact::elastic::ElasticLaw;
+use crate::contact::{self, depth_under};
 use crate::dae::System;
+use crate::friction::FrictionLaw;
 use crate::joint::REVOLUTE;
 use crate::mechanism::{Mechanism, Observation};
 use crate::model::Description;
@@ -25,6 +28,9 @@ pub struct Arguments {
     #[arg(long)]
     json: bool,
 }
+
+/// Force (N) that an elastic law without a stiffness of its own is told by.
+const PRESSING: f64 = 1000.0;
 
 /// Says what a case describes; writes nothing.
 pub(super) fn check(arguments: &Arguments) -> Result<(), Failure> {
@@ -122,13 +128,21 @@ impl Checked<'_> {
         let name = &model.names().clearances[k];
         writeln!(f, "  clearance    {name}: journal on {journal} in bearing on {bearing}")?;
         writeln!(f, "    starts in {mode}, eccentricity {offset:.6e} m")?;
-        match self.touches.iter().find(|touch| touch.clearance == k) {
-            Some(touch) => writeln!(
+        let touch = self.touches.iter().find(|touch| touch.clearance == k);
+        match touch {
+            Some(touch) => write!(
                 f,
                 "    an impact at {:.2e} m/s lasts about {:.1e} s and goes {:.1e} m deep ({:.3} kg)",
                 touch.speed, touch.duration, touch.depth, touch.mass
-            ),
-            None => Ok(()),
+            )?,
+            None => return Ok(()),
+        }
+        // else the law tells it, whatever speed and mass
+        match (model.clearances()[k].normal.damping_weight(), touch) {
+            (None, Some(touch)) => {
+                writeln!(f, ", and rebounds at {:.6} of its speed", touch.rebound)
+            }
+            _ => writeln!(f),
         }
     }
 
@@ -206,16 +220,28 @@ impl Checked<'_> {
     fn clearance_json(&self, k: usize) -> Value {
         let clearance = &self.simulation.mechanism().model().clearances()[k];
         let touch = self.touches.iter().find(|touch| touch.clearance == k);
+        let power = clearance.normal.elastic().power();
+        let weight = clearance.normal.damping_weight();
+        let name = &self.simulation.mechanism().model().names().clearances[k];
+        let described = self.case.description.clearance(name);
+        let described = described.and_then(|clearance| clearance.friction.as_ref());
         json!({
             "radial": clearance.radial,
             "bearing_radius": clearance.bearing_radius,
             "journal_radius": clearance.journal_radius,
-            "stiffness": clearance.normal.stiffness(),
-            "exponent": clearance.normal.exponent(),
-            "damping_weight": clearance.normal.damping_weight(),
-            "rebound": contact::rebound(clearance.normal.damping_weight()),
+            "elastic": elastic_word(&self.case.description, self.simulation.mechanism(), k),
+            "stiffness": power.map(|(stiffness, _)| stiffness),
+            "exponent": power.map(|(_, exponent)| exponent),
+            "damping_weight": weight,
+            "damping": word_of_damping(&self.case.description, self.simulation.mechanism(), k),
+            "rebound": weight.map(contact::rebound).or(touch.map(|touch| touch.rebound)),
             "nominal_restitution": nominal_restitution(&self.case.description, self.simulation.mechanism(), k),
             "friction": clearance.friction.is_some(),
+            "friction_law": described.map(|values| values.kind().word),
+            "holds_at_rest": clearance.friction.map(|law| law.inner_scale().is_some()),
+            "creep_under_half": described.zip(clearance.friction).and_then(|(values, law)| {
+                law.creep(0.5 * friction_of_rest(values))
+            }),
             "tension": if clearance.cut_tension { "cut" } else { "keep" },
             "minimum_impact_rate": clearance.minimum_impact_rate,
             "maximum_penetration": clearance.maximum_penetration,
@@ -397,6 +423,26 @@ fn nominal_restitution(
     description.clearance(name)?.normal.nominal_restitution()
 }
 
+/// The word of the elastic law of a clearance.
+fn elastic_word(
+    description: &Description,
+    mechanism: &Mechanism<f64>,
+    k: usize,
+) -> Option<&'static str> {
+    let name = &mechanism.model().names().clearances[k];
+    Some(description.clearance(name)?.normal.elastic.kind().word)
+}
+
+/// The word of the damping of a clearance.
+fn word_of_damping(
+    description: &Description,
+    mechanism: &Mechanism<f64>,
+    k: usize,
+) -> Option<&'static str> {
+    let name = &mechanism.model().names().clearances[k];
+    Some(description.clearance(name)?.normal.law.word())
+}
+
 /// What a clearance is, without where it is.
 fn law_lines(description: &Description, mechanism: &Mechanism<f64>, k: usize) -> String {
     let mut lines = String::new();
@@ -420,20 +466,67 @@ fn write_law(
         tidy(clearance.journal_radius)
     )?;
     let law = &clearance.normal;
-    writeln!(
-        f,
-        "    K = {:.9e} N/m^{}, damping weight a = {}",
-        law.stiffness(),
-        tidy(law.exponent()),
-        tidy(law.damping_weight())
-    )?;
-    let rebound = contact::rebound(law.damping_weight());
+    match law.elastic().power() {
+        Some((k, n)) => write!(f, "    K = {k:.9e} N/m^{}", tidy(n))?,
+        None => write!(
+            f,
+            "    elastic law {}: {PRESSING} N press it {:.4e} m deep",
+            elastic_word(description, mechanism, k).unwrap_or_default(),
+            depth_under(law.elastic(), PRESSING)
+        )?,
+    }
+    match law.damping_weight() {
+        Some(a) => writeln!(f, ", damping weight a = {}", tidy(a))?,
+        None => writeln!(
+            f,
+            ", damping of law {}",
+            word_of_damping(description, mechanism, k).unwrap_or_default()
+        )?,
+    }
+    let described = description.clearance(&mechanism.model().names().clearances[k]);
+    let friction = described.and_then(|clearance| clearance.friction.as_ref());
+    let Some(a) = law.damping_weight() else { return write_rest(friction, clearance, f) };
+    let rebound = contact::rebound(a);
     let asked = match nominal_restitution(description, mechanism, k) {
         Some(nominal) => format!(", as asked for: a nominal restitution of {nominal:.6}"),
         None => String::new(),
     };
     writeln!(f, "    one impact by itself rebounds at {rebound:.6} of its speed{asked}")?;
-    let friction = if clearance.friction.is_some() { "with friction" } else { "no friction" };
+    write_rest(friction, clearance, f)
+}
+
+/// Friction of rest over the normal force: the key `static`, or the one coefficient there is.
+fn friction_of_rest(friction: &Values) -> f64 {
+    let key = if friction.get("static").is_some() { "static" } else { "coefficient" };
+    friction.number(key)
+}
+
+/// The friction of a clearance, and what becomes of a load that rests on it.
+fn friction_at_rest(described: Option<&Values>, clearance: &Clearance<f64>) -> String {
+    let (Some(values), Some(law)) = (described, &clearance.friction) else {
+        return "no friction".to_owned();
+    };
+    let word = values.kind().word;
+    if law.inner_scale().is_some() {
+        return format!("friction {word}, which holds a load at rest");
+    }
+    let half = 0.5 * friction_of_rest(values);
+    match law.creep(half) {
+        Some(slip) => format!(
+            "friction {word}, which CREEPS under a load at rest: at {slip:.1e} m/s under {half} of the\n    \
+             normal force, half of what it can bear"
+        ),
+        None => format!("friction {word}"),
+    }
+}
+
+/// What was decided for a clearance where laws are silent.
+fn write_rest(
+    described: Option<&Values>,
+    clearance: &Clearance<f64>,
+    f: &mut String,
+) -> fmt::Result {
+    let friction = friction_at_rest(described, clearance);
     let tension = if clearance.cut_tension { "cut to zero" } else { "kept, as the law is printed" };
     writeln!(f, "    {friction}; tension is {tension}")?;
     writeln!(
@@ -443,8 +536,11 @@ fn write_law(
     )?;
     writeln!(
         f,
-        "    a run stops where the journal is deeper than {:e} m, {} of its radius",
-        tidy(clearance.maximum_penetration * clearance.journal_radius),
-        clearance.maximum_penetration
+        "    a run stops where the journal is deeper than {:e} m, {}",
+        tidy(clearance.believed_depth()),
+        match clearance.normal.elastic().deepest() > clearance.believed_depth() {
+            true => format!("{} of its radius", clearance.maximum_penetration),
+            false => clearance.believed_because(),
+        }
     )
 }

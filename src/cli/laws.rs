@@ -1,7 +1,9 @@
 //! `freeplay laws [NAME]`
 
 use super::Failure;
-use crate::contact::{Damping, Impact};
+use super::impact::{self, Fall, Law};
+use crate::contact::elastic::{Elastic, Power};
+use crate::contact::{Damping, Impact, NormalLaw, elastic, viscous};
 use crate::friction;
 use crate::parameter::{Kind, Otherwise};
 use crate::post::table;
@@ -19,6 +21,9 @@ pub struct Arguments {
     #[arg(long)]
     json: bool,
 }
+
+/// The impact that laws are told by which have no number without one.
+const BENCH: Fall = Fall { restitution: 0.8, mass: 0.05, speed: 1.0, aside: 0.0 };
 
 /// The exponent that penetrations and durations are told for.
 const EXPONENT: f64 = 1.5;
@@ -43,12 +48,15 @@ pub(super) fn of_names(names: &[String]) -> Result<Vec<Damping>, Failure> {
     }
     let of_name = |name: &String| match Damping::ALL.iter().find(|(word, _)| word == name) {
         Some((_, law)) => Ok(*law),
-        None => {
-            let near = crate::model::did_you_mean(name, Damping::ALL.iter().map(|(word, _)| *word));
-            Err(Failure::input(Wrong::Name { name: name.clone(), near }))
-        }
+        None => Err(unknown(name, Damping::ALL.iter().map(|(word, _)| *word))),
     };
     names.iter().map(of_name).collect()
+}
+
+/// Says that a name is none of those known.
+pub(super) fn unknown<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Failure {
+    let near = crate::model::did_you_mean(name, known);
+    Failure::input(Wrong::Name { name: name.to_owned(), near })
 }
 
 /// Prints the laws of normal force and friction, and what each really gives.
@@ -60,26 +68,55 @@ pub(super) fn laws(arguments: &Arguments) -> Result<(), Failure> {
         Some(name) => laws.filter(|(word, _)| word == name).map(|(_, law)| law).collect(),
     };
     let is_asked = |kind: &&&Kind| arguments.name.as_ref().is_none_or(|name| kind.word == name);
-    let frictions: Vec<&Kind> = friction::KINDS.iter().filter(is_asked).copied().collect();
-    if let (Some(name), true) = (&arguments.name, laws.is_empty() && frictions.is_empty()) {
+    let of = |kinds: &[&'static Kind]| kinds.iter().filter(is_asked).copied().collect::<Vec<_>>();
+    let (elastics, own) = (of(elastic::KINDS), of(viscous::KINDS));
+    let frictions = of(friction::KINDS);
+    let kinds = [&elastics[..], &own, &frictions].concat();
+    if let (Some(name), true) = (&arguments.name, laws.is_empty() && kinds.is_empty()) {
         let words = Damping::ALL.iter().map(|(word, _)| *word);
-        let words = words.chain(friction::KINDS.iter().map(|kind| kind.word));
-        let near = crate::model::did_you_mean(name, words);
-        return Err(Failure::input(Wrong::Name { name: name.clone(), near }));
+        let all = [elastic::KINDS, viscous::KINDS, friction::KINDS].concat();
+        return Err(unknown(name, words.chain(all.iter().map(|kind| kind.word))));
     }
+    let hertz = Law::Weight(Damping::Hertz);
+    let elastics = elastics.iter().map(|kind| Ok((*kind, impact_of(hertz, kind)?)));
+    let own = own.iter().map(|kind| Ok((*kind, impact_of(Law::Viscous(kind), elastic::POWER)?)));
+    let elastics = elastics.collect::<Result<Vec<_>, Failure>>()?;
+    let own = own.collect::<Result<Vec<_>, Failure>>()?;
     if arguments.json {
         let normal = laws.iter().map(|law| told(*law, &arguments.restitution));
-        let friction = frictions.iter().map(|kind| told_friction(kind));
+        let with_impact = |(kind, impact): &(&Kind, Impact)| told_kind(kind, Some(impact));
+        let friction = frictions.iter().map(|kind| told_kind(kind, None));
         let all = json!({
             "normal": normal.collect::<Vec<_>>(),
+            "elastic": elastics.iter().map(with_impact).collect::<Vec<_>>(),
+            "own_damping": own.iter().map(with_impact).collect::<Vec<_>>(),
             "friction": friction.collect::<Vec<_>>(),
         });
         return super::print_json(format_args!("{all:#}\n"));
     }
-    match (&laws[..], &frictions[..]) {
+    match (&laws[..], &kinds[..]) {
         ([law], []) => super::print(in_full(*law, &arguments.restitution)),
-        ([], [friction]) => super::print(friction_in_full(friction)),
-        _ => super::print(menu(&laws, &frictions, &arguments.restitution)),
+        ([], [kind]) => super::print(kind_in_full(kind)),
+        _ => super::print(menu(&laws, &elastics, &own, &frictions, &arguments.restitution)),
+    }
+}
+
+/// What the bench's impact does with a law.
+fn impact_of(law: Law, elastic: &'static Kind) -> Result<Impact, Failure> {
+    let normal = impact::normal_law(law, elastic, &BENCH)?;
+    Ok(Impact::of(&normal, BENCH.mass, BENCH.speed))
+}
+
+/// An impact with a damping weight, over what the elastic one with the same stiffness, mass and speed
+/// does.
+fn relative(damping_weight: f64) -> Impact {
+    let law = |a: f64| NormalLaw::new(Elastic::Power(Power::with(1.0, EXPONENT)), a);
+    let [impact, elastic] = [damping_weight, 0.0].map(|a| Impact::of(&law(a), 1.0, 1.0));
+    Impact {
+        rebound: impact.rebound,
+        depth: impact.depth / elastic.depth,
+        force: impact.force / elastic.force,
+        duration: impact.duration / elastic.duration,
     }
 }
 
@@ -87,7 +124,7 @@ fn told(law: Damping, restitutions: &[f64]) -> Value {
     let about = law.about();
     let impact = |e: &f64| {
         let weight: f64 = law.weight(*e);
-        let Impact { rebound, depth, duration } = Impact::new(weight, EXPONENT);
+        let Impact { rebound, depth, duration, .. } = relative(weight);
         json!({
             "nominal": e,
             "damping_weight": weight,
@@ -106,21 +143,33 @@ fn told(law: Damping, restitutions: &[f64]) -> Value {
     })
 }
 
-fn told_friction(kind: &Kind) -> Value {
+fn told_kind(kind: &Kind, impact: Option<&Impact>) -> Value {
     let keys = kind
         .keys
         .iter()
         .map(|key| json!({ "key": key.name, "unit": key.unit, "about": key.about }));
-    json!({
+    let mut told = json!({
         "law": kind.word,
         "title": kind.title,
         "source": kind.source,
         "keys": keys.collect::<Vec<_>>(),
-    })
+        "example": kind.example,
+    });
+    if let Some(Impact { rebound, depth, force, duration }) = impact {
+        told["impact"] = json!({
+            "mass": BENCH.mass,
+            "speed": BENCH.speed,
+            "rebound": rebound,
+            "depth": depth,
+            "force": force,
+            "duration": duration,
+        });
+    }
+    told
 }
 
-/// One friction law with all that it says of itself.
-fn friction_in_full(kind: &Kind) -> String {
+/// One law that has keys, with all that it says of itself.
+fn kind_in_full(kind: &Kind) -> String {
     let heads = ["key", "unit", "meaning", "if left out"].map(str::to_owned).to_vec();
     let row = |key: &crate::parameter::Key| {
         let otherwise = match key.otherwise {
@@ -136,8 +185,29 @@ fn friction_in_full(kind: &Kind) -> String {
     format!("{word}: {title}\n{source}\n{table}\n\n{}\n", kind.example)
 }
 
-/// The laws in tables: the rebound of each at each restitution, and the friction laws.
-fn menu(laws: &[Damping], frictions: &[&Kind], restitutions: &[f64]) -> String {
+/// Laws with what the bench's impact does with each.
+fn impacts(heads: [&str; 2], laws: &[(&Kind, Impact)], rebounds: bool) -> String {
+    let mut heads = heads.map(str::to_owned).to_vec();
+    heads.extend(rebounds.then(|| "rebound".to_owned()));
+    heads.extend(["depth (m)", "force (N)", "duration (s)"].map(str::to_owned));
+    let row = |(kind, impact): &(&Kind, Impact)| {
+        let mut row = vec![kind.word.to_owned(), kind.title.to_owned()];
+        row.extend(rebounds.then(|| format!("{:.6}", impact.rebound)));
+        let numbers = [impact.depth, impact.force, impact.duration];
+        row.extend(numbers.map(|number| format!("{number:.3e}")));
+        row
+    };
+    table(heads, laws.iter().map(row).collect(), 2).to_string()
+}
+
+/// The laws in tables: the rebound of each at each restitution, what others do, and the friction laws.
+fn menu(
+    laws: &[Damping],
+    elastics: &[(&Kind, Impact)],
+    own: &[(&Kind, Impact)],
+    frictions: &[&Kind],
+    restitutions: &[f64],
+) -> String {
     let mut heads = vec!["law".to_owned(), "damping weight".to_owned()];
     heads.extend(restitutions.iter().map(|e| format!("e = {e}")));
     let row = |law: &Damping| {
@@ -152,10 +222,16 @@ fn menu(laws: &[Damping], frictions: &[&Kind], restitutions: &[f64]) -> String {
     let friction_rows =
         frictions.iter().map(|kind| vec![kind.word.to_owned(), kind.title.to_owned()]);
     let frictions = table(friction_heads, friction_rows.collect(), 2);
+    let elastics = impacts(["elastic", "elastic force"], elastics, false);
+    let own = impacts(["law", "normal force"], own, true);
+    let (mass, speed) = (BENCH.mass, BENCH.speed);
     format!(
-        "Normal force F = K δⁿ [1 + a δ̇/δ̇⁽⁻⁾]: what one impact really rebounds at, over its speed, for a\n\
-         nominal restitution e, whatever stiffness, exponent, mass and speed\n\n{}\n\nFriction, any with any normal \
-         force\n\n{frictions}\n\nfreeplay laws NAME shows one in full\n",
+        "Normal force F = F_e(δ) [1 + a δ̇/δ̇⁽⁻⁾]: what one impact really rebounds at, over its speed, for a\n\
+         nominal restitution e, whatever elastic law, mass and speed\n\n{}\n\nElastic laws F_e, any with any of \
+         these: an elastic impact of {mass} kg at {speed} m/s, steel, 9.5 mm in\n10 mm, 15 mm long\n\n{elastics}\n\n\
+         Laws with a damping of their own, as their examples have it: the same impact\n\n{own}\n\nFriction, any \
+         with any normal force\n\n{frictions}\n\nfreeplay laws NAME shows one in full; freeplay impact holds \
+         runs against these numbers\n",
         table(heads, rows, 2)
     )
 }
@@ -166,7 +242,7 @@ fn in_full(law: Damping, restitutions: &[f64]) -> String {
     let heads = ["e", "a", "rebound", "depth", "duration", "pulls where the rate is below"];
     let row = |e: &f64| {
         let weight: f64 = law.weight(*e);
-        let impact = Impact::new(weight, EXPONENT);
+        let impact = relative(weight);
         let pulls = match weight > 0.0 {
             true => format!("{:.4} δ̇⁽⁻⁾", -1.0 / weight),
             false => "never".into(),

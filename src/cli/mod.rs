@@ -5,6 +5,7 @@ mod check;
 mod compare;
 mod completions;
 mod export;
+mod impact;
 mod info;
 mod laws;
 mod man;
@@ -60,6 +61,8 @@ enum Command {
     Completions(completions::Arguments),
     /// List the laws of the contact force, with what each really gives.
     Laws(laws::Arguments),
+    /// Let a mass fall on a wall with laws of the contact force, and hold runs against closed forms.
+    Impact(impact::Arguments),
     /// Print the JSON Schema of case files, for editors.
     Schema(schema::Arguments),
     /// Write manual pages.
@@ -199,6 +202,7 @@ pub fn main() -> ExitCode {
         Command::Report(arguments) => report::report(&arguments),
         Command::Completions(arguments) => completions::completions(&arguments),
         Command::Laws(arguments) => laws::laws(&arguments),
+        Command::Impact(arguments) => impact::impact(&arguments),
         Command::Schema(arguments) => schema::schema_of_cases(&arguments),
         Command::Man(arguments) => man::man(&arguments),
     };

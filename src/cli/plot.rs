@@ -136,8 +136,8 @@ pub(super) fn plot(arguments: &Arguments) -> Result<(), Failure> {
     };
     let figures = chosen(figures, &arguments.only).map_err(Failure::input)?;
     let formats = formats(arguments);
-    let written = write(&figures, &formats, arguments);
-    let written = written.map_err(Failure::output)?;
+    let inputs: Vec<&Path> = arguments.files.iter().map(PathBuf::as_path).collect();
+    let written = write(&figures, &formats, &arguments.output, arguments.force, &inputs)?;
     let (count, folder) = (figures.len(), arguments.output.display());
     super::print(format_args!("{folder}: {count} figures, {written} files\n"))
 }
@@ -184,13 +184,23 @@ fn formats(arguments: &Arguments) -> Vec<Format> {
 
 /// Writes every figure in every format; says how many files that were. Nothing is written if a
 /// file that must stay is in the way.
-fn write(
+pub(super) fn write(
     figures: &[Figure],
     formats: &[Format],
-    arguments: &Arguments,
+    folder: &Path,
+    force: bool,
+    inputs: &[&Path],
+) -> Result<usize, Failure> {
+    write_files(figures, formats, folder, force, inputs).map_err(Failure::output)
+}
+
+fn write_files(
+    figures: &[Figure],
+    formats: &[Format],
+    folder: &Path,
+    force: bool,
+    inputs: &[&Path],
 ) -> Result<usize, PlotError> {
-    let folder = &arguments.output;
-    let inputs: Vec<&Path> = arguments.files.iter().map(PathBuf::as_path).collect();
     fs::create_dir_all(folder).map_err(|source| {
         let path = folder.to_owned();
         PlotError::Folder { path, source }
@@ -203,7 +213,7 @@ fn write(
         .flat_map(|figure| formats.iter().map(move |format| (figure, *format)))
         .map(|(figure, format)| (figure, format, path(figure, format)))
         .collect();
-    let draft = |(_, _, path): &(_, _, PathBuf)| Draft::create_from(path, arguments.force, &inputs);
+    let draft = |(_, _, path): &(_, _, PathBuf)| Draft::create_from(path, force, inputs);
     let drafts: Vec<Draft> = files.iter().map(draft).collect::<Result<_, _>>()?;
     for ((figure, format, path), draft) in files.iter().zip(drafts) {
         let encoded = figure.encode(*format);

@@ -25,6 +25,12 @@ impl<S: Scalar> Material<S> {
     }
 }
 
+/// E* (Pa) of two materials: 1/E* = σ_i + σ_j.
+pub fn composite<S: Scalar>(materials: [Material<S>; 2]) -> S {
+    let [sigma_i, sigma_j] = materials.map(|material| material.compliance());
+    S::one() / (sigma_i + sigma_j)
+}
+
 /// K (N/m^1.5) of two materials and an effective radius R (m), eq. 5.
 fn hertz<S: Scalar>(materials: [Material<S>; 2], radius: S) -> S {
     let [sigma_i, sigma_j] = materials.map(|material| material.compliance());

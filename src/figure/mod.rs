@@ -38,7 +38,7 @@ mod touching;
 
 pub use encode::EncodeError;
 pub use fonts::{Font, ITALIC, ROMAN};
-pub use law_loops::draw_laws;
+pub use law_loops::{ImpactLoop, draw_impacts, draw_laws};
 pub use sheet::{DOUBLE_COLUMN, SINGLE_COLUMN};
 
 use crate::record::{self, ResultFile};

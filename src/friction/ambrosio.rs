@@ -49,10 +49,11 @@ friction = { law = "ambrosio", coefficient = 0.1, v0 = 1e-3, v1 = 1e-2 }"#,
 };
 
 /// The ramp has a width.
-fn rises(values: &Values) -> Option<(&'static str, String)> {
-    let (v0, v1) = (values.decimal("v0")?, values.decimal("v1")?);
-    (v1.to_f64() <= v0.to_f64())
-        .then(|| ("v1", format!("must be greater than v0, {v0} (m/s), is {v1}")))
+fn rises(values: &Values) -> Vec<(&'static str, String)> {
+    let both = values.decimal("v0").zip(values.decimal("v1"));
+    let wrong = both.filter(|(v0, v1)| v1.to_f64() <= v0.to_f64());
+    let complaint = |(v0, v1)| ("v1", format!("must be greater than v0, {v0} (m/s), is {v1}"));
+    wrong.map(complaint).into_iter().collect()
 }
 
 /// Which piece of the law is in force.

@@ -21,6 +21,7 @@ kinds! { $
     Ambrosio in ambrosio,
     Dahl in dahl,
     LuGre in lugre,
+    ElastoPlastic in elasto_plastic,
     Tanh in tanh,
     BrownMcPhee in brown_mcphee,
     Threlfall in threlfall,
@@ -139,6 +140,31 @@ impl<S: Scalar> FrictionLaw<S> for Friction<S> {
     }
 }
 
+/// Steps of a decade in which the slip is looked for that bears a load.
+const STEPS_OF_A_DECADE: i32 = 20;
+
+impl Friction<f64> {
+    /// The slip (m/s) at which a joint creeps under a tangential load of so much of the normal force:
+    /// the slowest with that much friction. `None` where the law holds the load by what it remembers,
+    /// and where it cannot bear it at any slip.
+    pub fn creep(&self, load: f64) -> Option<f64> {
+        if self.inner_scale().is_some() {
+            return None;
+        }
+        let bears = |slip: f64| self.ratio(self.branch(slip, 0.0), slip, 0.0).value.abs() >= load;
+        let scale = self.slip_scale();
+        let at = |step: i32| scale * 10_f64.powf(f64::from(step) / f64::from(STEPS_OF_A_DECADE));
+        let found =
+            (-9 * STEPS_OF_A_DECADE..=4 * STEPS_OF_A_DECADE).find(|step| bears(at(*step)))?;
+        let (mut slow, mut fast) = (at(found - 1), at(found));
+        for _ in 0..60 {
+            let middle = f64::midpoint(slow, fast);
+            if bears(middle) { fast = middle } else { slow = middle }
+        }
+        Some(fast)
+    }
+}
+
 /// The one branch of a law that has no edge.
 const WHOLE: Branch = Branch(0);
 
@@ -158,8 +184,60 @@ const COEFFICIENT: Key = Key {
 };
 
 /// Friction of rest is no less than that of sliding.
-fn rest_holds(values: &Values) -> Option<(&'static str, String)> {
-    let (sliding, rest) = (values.decimal("coefficient")?, values.decimal("static")?);
-    (rest.to_f64() < sliding.to_f64())
-        .then(|| ("static", format!("must be at least the coefficient, {sliding}, is {rest}")))
+fn rest_holds(values: &Values) -> Vec<(&'static str, String)> {
+    let both = values.decimal("coefficient").zip(values.decimal("static"));
+    let wrong = both.filter(|(sliding, rest)| rest.to_f64() < sliding.to_f64());
+    let complaint = |(sliding, rest)| {
+        ("static", format!("must be at least the coefficient, {sliding}, is {rest}"))
+    };
+    wrong.map(complaint).into_iter().collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::parameter::{Kind, Value};
+    use crate::scalar::Decimal;
+    use toml_edit::DocumentMut;
+
+    /// The law of a kind's own example.
+    fn example(kind: &'static Kind) -> Friction<f64> {
+        let document: DocumentMut = kind.example.parse().unwrap();
+        let table = &document["joints"]["A"]["clearance"]["friction"];
+        let values = kind.keys.iter().fold(Values::new(kind), |values, key| {
+            let given = table.get(key.name).map(|value| value.to_string());
+            let text = match (given, key.otherwise) {
+                (Some(text), _) => text,
+                (None, Otherwise::Default(text)) => text.to_owned(),
+                (None, _) => return values,
+            };
+            values.with(key.name, Value::Number(Decimal::new(text.trim()).unwrap()))
+        });
+        Friction::new(&values, &Ends { hysteresis: 1e-7 }).unwrap()
+    }
+
+    #[test]
+    fn laws_that_remember_hold_and_others_creep_where_their_formulas_say() {
+        // under half of μ = 0.1
+        let known = |word: &str| match word {
+            "dahl" | "lugre" | "elasto-plastic" => None,
+            "ambrosio" => Some(1e-3 + 0.5 * 9e-3),
+            "tanh" => Some(1e-3 * 0.5_f64.atanh()),
+            "threlfall" => Some(1e-3 * 2_f64.ln() / 3.0),
+            // 0.05 = 0.15 [1 − (1 − x)²]
+            "bengisu-akay" => Some(1e-3 * (1.0 - (2.0_f64 / 3.0).sqrt())),
+            _ => Some(f64::NAN),
+        };
+        for kind in KINDS.iter().filter(|kind| kind.word != "thick") {
+            let (found, expected) = (example(kind).creep(0.05), known(kind.word));
+            match (found, expected) {
+                (Some(found), Some(expected)) if expected.is_finite() => {
+                    assert!((found / expected - 1.0).abs() < 1e-6, "{}: {found}", kind.word);
+                }
+                _ => assert_eq!(found.is_some(), expected.is_some(), "{}", kind.word),
+            }
+            let unbearable = example(kind).creep(1e3);
+            assert_eq!(unbearable, None, "{}", kind.word);
+        }
+    }
 }

@@ -59,16 +59,17 @@ force = [0.0, -1.0]"#,
 };
 
 /// A force, or a direction and a magnitude.
-fn one_of_two(values: &Values) -> Option<(&'static str, String)> {
+fn one_of_two(values: &Values) -> Vec<(&'static str, String)> {
     let there = |key| values.get(key).is_some();
-    match (there("force"), there("direction"), there("magnitude")) {
-        (true, false, false) | (false, true, true) => None,
-        (true, true, _) => Some(("direction", "is not used where `force` is given".into())),
-        (true, false, true) => Some(("magnitude", "is not used where `force` is given".into())),
-        (false, true, false) => Some(("magnitude", "is missing beside `direction` (N)".into())),
-        (false, false, true) => Some(("direction", "is missing beside `magnitude`".into())),
-        (false, false, false) => Some(("force", "is missing (N)".into())),
-    }
+    let (key, message) = match (there("force"), there("direction"), there("magnitude")) {
+        (true, false, false) | (false, true, true) => return Vec::new(),
+        (true, true, _) => ("direction", "is not used where `force` is given"),
+        (true, false, true) => ("magnitude", "is not used where `force` is given"),
+        (false, true, false) => ("magnitude", "is missing beside `direction` (N)"),
+        (false, false, true) => ("direction", "is missing beside `magnitude`"),
+        (false, false, false) => ("force", "is missing (N)"),
+    };
+    vec![(key, message.to_owned())]
 }
 
 /// The force: its point on the second body, a direction, and the magnitude along it (N).

@@ -16,6 +16,7 @@ impl<S: Scalar> Mechanism<S> {
     pub(super) fn apply_loads(&mut self, roots: &[Option<S>]) {
         let now = &mut self.now;
         now.wrenches.fill(Wrench::none());
+        now.relaxation = 0.0;
         for load in self.model.loads() {
             let masses = self.model.masses();
             load.apply(now.time, masses, &now.poses, &now.motions, &mut now.wrenches);
@@ -38,7 +39,9 @@ impl<S: Scalar> Mechanism<S> {
             }
             let inner = place.map_or(S::zero(), |place| now.z[place]);
             if let Some(place) = place {
-                now.z_dot[place] = clearance.inner_rate(contact, &rates, inner).value;
+                let bend = clearance.inner_rate(contact, &rates, inner);
+                now.z_dot[place] = bend.value;
+                now.relaxation = now.relaxation.max(-bend.d_inner.to_f64());
             }
             let force = clearance.force(contact, &gap, &rates, inner, root);
             let [bearing, journal] = clearance.wrenches(&gap, &force);

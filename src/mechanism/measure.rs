@@ -199,7 +199,7 @@ impl<S: Scalar> Mechanism<S> {
             Some(touch) => {
                 let [along, across] = mobility;
                 let bristles = touch.force.tangential_slope().to_f64().abs();
-                sum + along * touch.force.normal.d_depth.to_f64().abs() + across * bristles
+                sum + along * touch.force.normal.swing.to_f64().abs() + across * bristles
             }
             None => sum,
         });

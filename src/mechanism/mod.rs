@@ -90,6 +90,8 @@ struct Evaluation<S> {
     /// Inner states, and their rates.
     z: Vec<S>,
     z_dot: Vec<S>,
+    /// The fastest relaxation of an inner state (1/s).
+    relaxation: f64,
     lambda: Vec<S>,
     powers: Vec<S>,
     /// Arms of each constraint's points.
@@ -117,6 +119,7 @@ impl<S: Scalar> Evaluation<S> {
             v_dot: vec![S::zero(); layout.coordinates],
             z: vec![S::zero(); inner_states],
             z_dot: vec![S::zero(); inner_states],
+            relaxation: 0.0,
             lambda: vec![S::zero(); layout.rows],
             powers: vec![S::zero(); Ledger::of(model).len()],
             arms: vec![[Vector::zero(); 2]; layout.constraints.len()],
@@ -285,7 +288,7 @@ impl<S: Scalar> Mechanism<S> {
         let (k, what) = self.slots[slot];
         let clearance = &self.model.clearances()[k];
         let gap = self.now.gap(k, clearance);
-        let mode = clearance.switched(&self.modes[k], what, || {
+        let mode = clearance.switched(&self.modes[k], what, &gap, || {
             let (motions, accelerations) = (&self.now.motions, &self.now.accelerations);
             let rates = clearance.rates(&gap, motions);
             (rates, clearance.second_rates(&gap, &rates, motions, accelerations).1)

@@ -71,7 +71,7 @@ impl<S: Scalar> Mechanism<S> {
             let (Mode::Contact(contact), Some(touch)) = (mode, touch) else { continue };
             let (gap, rates) = (&touch.gap, &touch.rates);
             let (_, acceleration) = law.second_rates(gap, rates, &now.motions, &now.accelerations);
-            *contact = law.begin(contact.impact_rate, rates.slip, acceleration);
+            *contact = law.begin(gap.depth, contact.impact_rate, rates.slip, acceleration);
         }
         Ok(())
     }
@@ -96,7 +96,7 @@ impl<S: Scalar> Mechanism<S> {
         let law = &self.model.clearances()[k];
         let gap = self.now.gap(k, law);
         let rates = law.rates(&gap, &self.now.motions);
-        self.modes[k] = Mode::Contact(law.begin(rates.rate, rates.slip, S::zero()));
+        self.modes[k] = Mode::Contact(law.begin(gap.depth, rates.rate, rates.slip, S::zero()));
     }
 
     /// Begins the contacts of journals that rest on the wall and would go outward. The force of
@@ -119,7 +119,7 @@ impl<S: Scalar> Mechanism<S> {
                 let gap = self.now.gap(k, law);
                 let rates = law.rates(&gap, &self.now.motions);
                 let rate = rates.rate.max(S::zero());
-                self.modes[k] = Mode::Contact(law.begin(rate, rates.slip, S::zero()));
+                self.modes[k] = Mode::Contact(law.begin(gap.depth, rate, rates.slip, S::zero()));
             }
             resting = open;
             resting.iter_mut().for_each(|resting| resting.outward = None);

@@ -87,6 +87,10 @@ impl<S: Scalar> System<S> for Mechanism<S> {
         &self.now.z_dot
     }
 
+    fn inner_relaxation(&self) -> f64 {
+        self.now.relaxation
+    }
+
     fn lambda(&self) -> &[S] {
         &self.now.lambda
     }
@@ -137,7 +141,7 @@ impl<S: Scalar> System<S> for Mechanism<S> {
             crate::clearance::EventSlot::Depth => (S::zero(), S::zero()),
             _ => clearance.second_rates(&gap, &rates, &now.motions, &now.accelerations),
         };
-        clearance.event_rate(&self.modes[k], what, rates.rate, second)
+        clearance.event_rate(&self.modes[k], what, &gap, rates.rate, second)
     }
 
     fn course(&self, slot: usize) -> Course {

@@ -3,10 +3,12 @@
 
 use super::normal_law;
 use super::{
-    BodyDescription, ClearanceDescription, Complaint, Complaints, Description, DriveDescription,
-    JointDescription, KeyPath, LoadDescription, NamedPoint, NormalDescription, OfMaterials,
-    StartDescription, StiffnessDescription, shortened,
+    BodyDescription, ClearanceDescription, Complaint, Complaints, DampingDescription, Description,
+    DriveDescription, JointDescription, KeyPath, LoadDescription, NamedPoint, NormalDescription,
+    StartDescription, shortened,
 };
+use crate::contact::Damping;
+use crate::contact::elastic::{self, ElasticLaw};
 use crate::joint::{PRISMATIC, REVOLUTE};
 use crate::parameter::{Key, Takes, Value, Values};
 use crate::scalar::Decimal;
@@ -157,10 +159,21 @@ fn check_part(
                     check_goes(complaints, &key, course, "velocity", "speed_rpm");
                 }
             }
+            (Takes::NumberOr(range, _), Value::Number(number)) => {
+                complaints.require(key, number, unit, range.words(), |x| range.holds(x));
+            }
+            (Takes::OfMaterials(range), Value::Materials([bearing, journal])) => {
+                // what is the same for both is told once
+                let others = (journal != bearing).then_some(journal);
+                for number in std::iter::once(bearing).chain(others) {
+                    let key = key.clone();
+                    complaints.require(key, number, unit, range.words(), |x| range.holds(x));
+                }
+            }
             _ => {}
         }
     }
-    if let Some((key, message)) = part.kind().also.and_then(|also| also(part)) {
+    for (key, message) in part.kind().also.map_or_else(Vec::new, |also| also(part)) {
         complaints.add(path.key(key), message);
     }
 }
@@ -260,53 +273,71 @@ fn check_clearance(
     let holds = |share: f64| share > 0.0 && share <= 1.0;
     complaints.require(key.key("maximum_penetration"), share, "", range, holds);
     let before = complaints.len();
-    check_normal(complaints, &key.key("normal"), &clearance.normal);
+    check_normal(complaints, description, &key.key("normal"), &clearance.normal);
     let is_inside = bearing_right && radial_right && radial.to_f64() < bearing.to_f64();
     if is_inside && complaints.len() == before {
-        check_stiffness(complaints, key.key("normal").key("stiffness"), clearance);
+        check_elastic(complaints, &key.key("normal"), clearance);
     }
     if let Some(friction) = &clearance.friction {
         check_part(complaints, description, &key.key("friction"), friction);
     }
 }
 
-/// Radii and materials in range may yet come to a stiffness that is no number.
-fn check_stiffness(complaints: &mut Complaints, key: KeyPath, clearance: &ClearanceDescription) {
+/// Radii and materials in range may yet be none that the law is for, or come to a stiffness that is no
+/// number.
+fn check_elastic(complaints: &mut Complaints, key: &KeyPath, clearance: &ClearanceDescription) {
     let (bearing, radial) = (clearance.bearing_radius.to_f64(), clearance.radial.to_f64());
-    let stiffness = normal_law::<f64>(&clearance.normal, bearing, bearing - radial).stiffness();
-    if !(stiffness > 0.0 && stiffness.is_finite()) {
+    let Some(law) = normal_law::<f64>(&clearance.normal, bearing, bearing - radial) else { return };
+    if let Some(objection) = law.elastic().objection() {
+        return complaints.add(key.key("elastic"), objection);
+    }
+    if let Some(wanted) = law.wanted_exponent() {
+        let word = clearance.normal.law.word();
+        let goes_with = format!("law {word:?} goes with the power law and exponent {wanted}");
+        match law.elastic().power() {
+            Some((_, exponent)) if clearance.normal.elastic.is(elastic::POWER.word) => {
+                if exponent != wanted {
+                    complaints.add(key.key("exponent"), format!("{goes_with}, this is {exponent}"));
+                }
+            }
+            _ => complaints.add(key.key("elastic"), goes_with),
+        }
+    }
+    let (what, number) = match law.elastic().power() {
+        Some((stiffness, _)) => ("stiffness", stiffness),
+        None => ("elastic", law.elastic().force(1e-3 * radial.min(law.elastic().deepest())).1),
+    };
+    if !(number > 0.0 && number.is_finite()) {
+        let unit = if what == "stiffness" { "N/mⁿ" } else { "N/m" };
         let from = "with these radii and materials";
-        complaints.add(key, format!("comes to {stiffness:e} (N/mⁿ) {from}: it must be positive"));
+        let message = format!("comes to {number:e} ({unit}) {from}: it must be positive");
+        complaints.add(key.key(what), message);
     }
 }
 
-fn check_normal(complaints: &mut Complaints, key: &KeyPath, normal: &NormalDescription) {
-    complaints.require(key.key("exponent"), &normal.exponent, "", "at least 1", |n| n >= 1.0);
-    check_restitution(complaints, key, normal);
-    if let StiffnessDescription::Number(stiffness) = &normal.stiffness {
-        complaints.require_positive(key.key("stiffness"), stiffness, "N/mⁿ");
+fn check_normal(
+    complaints: &mut Complaints,
+    description: &Description,
+    key: &KeyPath,
+    normal: &NormalDescription,
+) {
+    match &normal.law {
+        DampingDescription::Weight(damping) => {
+            check_restitution(complaints, key, normal, *damping);
+        }
+        DampingDescription::Viscous(values) => check_part(complaints, description, key, values),
     }
-    check_material(complaints, key.key("young"), &normal.stiffness, &normal.young, "Pa");
-    for young in of_each(&normal.young) {
-        complaints.require_positive(key.key("young"), young, "Pa");
-    }
-    check_material(complaints, key.key("poisson"), &normal.stiffness, &normal.poisson, "");
-    for poisson in of_each(&normal.poisson) {
-        let range = "greater than -1 and at most 0.5";
-        complaints.require(key.key("poisson"), poisson, "", range, |nu| nu > -1.0 && nu <= 0.5);
-    }
-}
-
-/// A constant's values, bearing first; what is the same for both comes once.
-fn of_each(constant: &Option<OfMaterials>) -> impl Iterator<Item = &Decimal> {
-    constant.iter().flat_map(|OfMaterials { bearing, journal }| {
-        std::iter::once(bearing).chain((journal != bearing).then_some(journal))
-    })
+    check_part(complaints, description, key, &normal.elastic);
 }
 
 /// A law that dissipates needs a restitution, nominal or achieved, one that does not takes none.
-fn check_restitution(complaints: &mut Complaints, key: &KeyPath, normal: &NormalDescription) {
-    let (dissipates, law) = (normal.law.about().restitution, normal.law.about().word);
+fn check_restitution(
+    complaints: &mut Complaints,
+    key: &KeyPath,
+    normal: &NormalDescription,
+    damping: Damping,
+) {
+    let (dissipates, law) = (damping.about().restitution, damping.about().word);
     let (nominal, achieved) = (key.key("restitution"), key.key("achieved_restitution"));
     let given = [(nominal, &normal.restitution), (achieved, &normal.achieved_restitution)];
     for (key, restitution) in &given {
@@ -327,35 +358,12 @@ fn check_restitution(complaints: &mut Complaints, key: &KeyPath, normal: &Normal
             complaints.add(key, "the restitution is given too: one of the two determines the law");
         }
         (None, Some(achieved)) if dissipates => {
-            let (achieved, least) = (achieved.to_f64(), normal.law.least_rebound());
+            let (achieved, least) = (achieved.to_f64(), damping.least_rebound());
             if achieved > 0.0 && achieved < least {
                 let at = format!("law {law:?} rebounds at {least:.4} of the speed or more");
                 complaints.add(key, format!("is {achieved}, but {at}; `freeplay laws` has others"));
             }
         }
-        _ => {}
-    }
-}
-
-/// The Hertz stiffnesses need each material constant, a stiffness given as a number takes none.
-fn check_material(
-    complaints: &mut Complaints,
-    key: KeyPath,
-    stiffness: &StiffnessDescription,
-    constant: &Option<OfMaterials>,
-    unit: &str,
-) {
-    let by_material = match stiffness {
-        StiffnessDescription::HertzPrinted => Some("hertz-printed"),
-        StiffnessDescription::HertzInternal => Some("hertz-internal"),
-        StiffnessDescription::Number(_) => None,
-    };
-    match (by_material, constant) {
-        (Some(name), None) => {
-            let unit = super::in_brackets(unit);
-            complaints.add(key, format!("is missing{unit}; stiffness {name:?} needs it"));
-        }
-        (None, Some(_)) => complaints.add(key, "is not used where stiffness is a number"),
         _ => {}
     }
 }

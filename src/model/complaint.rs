@@ -159,10 +159,7 @@ impl Complaints {
     }
 }
 
-/// ` (m)`, or nothing for no unit.
-pub fn in_brackets(unit: &str) -> String {
-    if unit.is_empty() { String::new() } else { format!(" ({unit})") }
-}
+pub use crate::parameter::in_brackets;
 
 /// ` (did you mean "follower"?)` for the known word nearest to `word`, or nothing if none is near.
 pub fn did_you_mean<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> String {

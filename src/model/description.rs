@@ -98,19 +98,13 @@ pub enum Tension {
 #[derive(Debug, Clone, PartialEq)]
 pub struct NormalDescription {
     /// The law of its damping.
-    pub law: Damping,
+    pub law: DampingDescription,
     /// Restitution c_e in (0, 1]; the Hertz law has none.
     pub restitution: Option<Decimal>,
     /// The restitution that one impact by itself is to have, in place of a nominal one.
     pub achieved_restitution: Option<Decimal>,
-    /// Generalized stiffness.
-    pub stiffness: StiffnessDescription,
-    /// Young's modulus E (Pa), for the Hertz stiffnesses.
-    pub young: Option<OfMaterials>,
-    /// Poisson's ratio ν.
-    pub poisson: Option<OfMaterials>,
-    /// Exponent n of the penetration.
-    pub exponent: Decimal,
+    /// The law of its elastic part, with its keys.
+    pub elastic: Values,
 }
 
 impl Description {
@@ -120,31 +114,31 @@ impl Description {
     }
 }
 
-impl NormalDescription {
-    /// The nominal restitution that gives the one to be achieved, where that is asked for.
-    pub fn nominal_restitution(&self) -> Option<f64> {
-        self.law.nominal(self.achieved_restitution.as_ref()?.to_f64())
+/// The damping of a normal force.
+#[derive(Debug, Clone, PartialEq)]
+pub enum DampingDescription {
+    /// A weight of 1 + a δ̇/δ̇⁽⁻⁾.
+    Weight(Damping),
+    /// A viscous damping, with its keys.
+    Viscous(Values),
+}
+
+impl DampingDescription {
+    /// Its name in case files.
+    pub fn word(&self) -> &'static str {
+        match self {
+            DampingDescription::Weight(damping) => damping.about().word,
+            DampingDescription::Viscous(viscous) => viscous.kind().word,
+        }
     }
 }
 
-/// A constant of the two materials that touch; written as one number where they are the same.
-#[derive(Debug, Clone, PartialEq)]
-pub struct OfMaterials {
-    /// Of the bearing's.
-    pub bearing: Decimal,
-    /// Of the journal's.
-    pub journal: Decimal,
-}
-
-/// Where the stiffness K of a contact comes from.
-#[derive(Debug, Clone, PartialEq)]
-pub enum StiffnessDescription {
-    /// `"hertz-printed"`: the paper's eq. 5, with R_b R_j / (R_b + R_j).
-    HertzPrinted,
-    /// `"hertz-internal"`: with R_b R_j / (R_b − R_j).
-    HertzInternal,
-    /// K itself (N/mⁿ).
-    Number(Decimal),
+impl NormalDescription {
+    /// The nominal restitution that gives the one to be achieved, where that is asked for.
+    pub fn nominal_restitution(&self) -> Option<f64> {
+        let DampingDescription::Weight(damping) = &self.law else { return None };
+        damping.nominal(self.achieved_restitution.as_ref()?.to_f64())
+    }
 }
 
 /// A drive.

@@ -14,7 +14,9 @@ pub use complaint::*;
 pub use description::*;
 
 use crate::clearance::Clearance;
-use crate::contact::{Damping, NormalLaw, stiffness};
+use crate::contact::elastic::{self, Elastic, ElasticLaw};
+use crate::contact::viscous::{self, Viscous};
+use crate::contact::{Damping, NormalLaw};
 use crate::course::Course;
 use crate::friction::{self, Friction};
 use crate::joint::{self, Pair, Relation};
@@ -102,10 +104,14 @@ impl<S: Scalar> Model<S> {
         for joint in &description.joints {
             let sites = Sites::of(description, &frame, &joint.part);
             let ends = joint::Ends { pair: sites.pair, third: sites.third };
-            let clearance = joint.clearance.as_ref().map(|clearance| {
-                clearances.push(read_clearance(ends.pair, clearance));
-                clearances.len() - 1
-            });
+            let clearance = match &joint.clearance {
+                Some(clearance) => {
+                    let read = read_clearance(ends.pair, clearance);
+                    clearances.push(known("joints", &joint.name, read)?);
+                    Some(clearances.len() - 1)
+                }
+                None => None,
+            };
             let relation = known("joints", &joint.name, Relation::new(&joint.part, &ends))?;
             joints.push(Joint { relation, ends, clearance });
         }
@@ -312,43 +318,45 @@ impl<S: Scalar> Sites<S> {
     }
 }
 
-fn read_clearance<S: Scalar>(pair: Pair<S>, clearance: &ClearanceDescription) -> Clearance<S> {
+fn read_clearance<S: Scalar>(
+    pair: Pair<S>,
+    clearance: &ClearanceDescription,
+) -> Option<Clearance<S>> {
     let bearing_radius: S = clearance.bearing_radius.value();
     let radial: S = clearance.radial.value();
     let journal_radius = bearing_radius - radial;
-    Clearance {
+    Some(Clearance {
         pair,
         bearing_radius,
         journal_radius,
         radial,
-        normal: normal_law(&clearance.normal, bearing_radius, journal_radius),
+        normal: normal_law(&clearance.normal, bearing_radius, journal_radius)?,
         friction: clearance.friction.as_ref().and_then(friction_law),
         cut_tension: clearance.tension == Tension::Cut,
         minimum_impact_rate: clearance.minimum_impact_rate.value(),
         maximum_penetration: clearance.maximum_penetration.to_f64(),
-    }
+    })
 }
 
-fn normal_law<S: Scalar>(normal: &NormalDescription, bearing: S, journal: S) -> NormalLaw<S> {
-    let number =
-        |number: Option<&Decimal>| number.map_or(S::one(), |number: &Decimal| number.value());
-    let material = |of: fn(&OfMaterials) -> &Decimal| stiffness::Material {
-        young: number(normal.young.as_ref().map(of)),
-        poisson: number(normal.poisson.as_ref().map(of)),
-    };
-    let materials = [material(|of| &of.bearing), material(|of| &of.journal)];
-    let k = match &normal.stiffness {
-        StiffnessDescription::HertzPrinted => stiffness::hertz_printed(materials, bearing, journal),
-        StiffnessDescription::HertzInternal => {
-            stiffness::hertz_internal(materials, bearing, journal)
+fn normal_law<S: Scalar>(
+    normal: &NormalDescription,
+    bearing: S,
+    journal: S,
+) -> Option<NormalLaw<S>> {
+    let elastic = Elastic::new(&normal.elastic, &elastic::Ends { bearing, journal })?;
+    let damping = match &normal.law {
+        DampingDescription::Weight(damping) => damping,
+        DampingDescription::Viscous(values) => {
+            let stiffness = elastic.power().map_or(S::one(), |(stiffness, _)| stiffness);
+            let viscous = Viscous::new(values, &viscous::Ends { stiffness })?;
+            return Some(NormalLaw::viscous(elastic, viscous));
         }
-        StiffnessDescription::Number(k) => k.value(),
     };
     let damping_weight = match &normal.achieved_restitution {
         Some(achieved) => Damping::Exact.weight(achieved.value()),
-        None => normal.law.weight(number(normal.restitution.as_ref())),
+        None => damping.weight(normal.restitution.as_ref().map_or(S::one(), Decimal::value)),
     };
-    NormalLaw::new(k, normal.exponent.value(), damping_weight)
+    Some(NormalLaw::new(elastic, damping_weight))
 }
 
 /// The law, or nothing where its coefficient is zero.

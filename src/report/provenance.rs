@@ -4,6 +4,7 @@ use super::html::escape;
 use super::number::{exactly, milliseconds, significant};
 use super::run::Run;
 use super::tables::Matrix;
+use crate::contact::elastic::ElasticLaw;
 use crate::model::Model;
 use crate::record::Attribute;
 
@@ -102,14 +103,22 @@ fn clearances(run: &Run<'_>) -> String {
     let described = clearances.map(|(name, clearance)| {
         let law = &clearance.normal;
         let friction = if clearance.friction.is_some() { "with" } else { "no" };
+        let word = case.description.clearance(name).map(|c| c.normal.elastic.kind().word);
+        let damping = match law.damping_weight() {
+            Some(a) => format!("damping weight {}", significant(a, 4)),
+            None => {
+                let described = case.description.clearance(name);
+                format!("law {}", described.map(|c| c.normal.law.word()).unwrap_or_default())
+            }
+        };
+        let elastic = match law.elastic().power() {
+            Some((k, n)) => format!("K = {} N/m<sup>{n}</sup>", significant(k, 6)),
+            None => format!("elastic law {}", word.unwrap_or_default()),
+        };
         let description = format!(
-            "c = {} mm in a bearing of {} mm, K = {} N/m<sup>{}</sup>, damping weight {}, \
-             {friction} friction",
+            "c = {} mm in a bearing of {} mm, {elastic}, {damping}, {friction} friction",
             significant(clearance.radial * 1e3, 4),
             significant(clearance.bearing_radius * 1e3, 4),
-            significant(law.stiffness(), 6),
-            law.exponent(),
-            significant(law.damping_weight(), 4),
         );
         (name.as_str(), description)
     });

@@ -106,8 +106,7 @@ pub enum Error<E: std::error::Error + 'static, R: std::error::Error + 'static> {
     /// A journal is so deep in its bearing that no contact law means anything.
     #[error(
         "the journal of {clearance} is {depth:.4e} m deep in its bearing at t = {time:e} s; its \
-         contact law means nothing beyond {allowed:.4e} m, {share} of the journal's radius \
-         (maximum_penetration). A mechanism that cannot turn, a stiffness in other units than \
+         contact law means nothing beyond {allowed:.4e} m, {why}. A mechanism that cannot turn, a stiffness in other units than \
          N/m^n or a load far too large comes to this: `freeplay check` says which is likely"
     )]
     TooDeep {
@@ -117,8 +116,8 @@ pub enum Error<E: std::error::Error + 'static, R: std::error::Error + 'static> {
         depth: f64,
         /// The largest that is believed (m).
         allowed: f64,
-        /// The same as a share of the journal's radius.
-        share: f64,
+        /// What sets it.
+        why: String,
         /// Where (s).
         time: f64,
     },
@@ -251,10 +250,10 @@ where
     let speed = system.scales().1.first().copied().unwrap_or(0.0);
     let mass = system.model().masses().iter().map(|mass| mass.to_f64()).sum();
     let names = system.model().names().clearances.clone();
-    let deepest = |c: &Clearance<S>| c.maximum_penetration * c.journal_radius.to_f64();
     let frictions = system.model().clearances().iter();
     let frictions = frictions.map(|clearance| clearance.friction.map(Bounds::of)).collect();
-    let allowed_depths = system.model().clearances().iter().map(deepest).collect();
+    let allowed_depths =
+        system.model().clearances().iter().map(Clearance::believed_depth).collect();
     let tracker = recorder
         .keeps_revolutions()
         .then(|| Box::new(Tracker::new(system.measures(), system.revolution(), system.length())));
@@ -449,7 +448,7 @@ where
             clearance: format!("joints.{}", model.names().clearances[k]),
             depth,
             allowed: self.allowed_depths[k],
-            share: model.clearances()[k].maximum_penetration,
+            why: model.clearances()[k].believed_because(),
             time,
         }
     }

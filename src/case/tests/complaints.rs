@@ -249,6 +249,41 @@ const BAD: &[(&str, &str, &str)] = &[
         "joints.A.clearance.normal.poisson: must be greater than -1 and at most 0.5, is 0.6",
     ),
     (
+        "stiffness = \"hertz-printed\"",
+        "elastic = \"jonson\"",
+        "joints.A.clearance.normal.elastic: must be {elastics}, is \"jonson\" (did you mean \"johnson\"?)",
+    ),
+    (
+        "stiffness = \"hertz-printed\"",
+        "elastic = \"johnson\"",
+        "joints.A.clearance.normal.length: is missing; it must be a number (m)",
+    ),
+    (
+        "stiffness = \"hertz-printed\"",
+        "elastic = \"johnson\", length = 0.0",
+        "joints.A.clearance.normal.length: must be positive (m), is 0.0",
+    ),
+    (
+        "stiffness = \"hertz-printed\"",
+        "elastic = \"liu\", length = 0.015, stiffness = 1e10",
+        "joints.A.clearance.normal.stiffness: unknown key; known here: law, restitution, achieved_restitution, elastic, young, poisson, length",
+    ),
+    (
+        "\"lankarani-nikravesh\", restitution = 0.9",
+        "\"kelvin-voigt\", damping = 100.0",
+        "joints.A.clearance.normal.exponent: law \"kelvin-voigt\" goes with the power law and exponent 1, this is 1.5",
+    ),
+    (
+        "\"lankarani-nikravesh\", restitution = 0.9, stiffness = \"hertz-printed\"",
+        "\"kuwabara-kono\", damping = 100.0, elastic = \"johnson\", length = 0.01",
+        "joints.A.clearance.normal.elastic: law \"kuwabara-kono\" goes with the power law and exponent 1.5",
+    ),
+    (
+        "\"lankarani-nikravesh\", restitution = 0.9",
+        "\"tsuji\", restitution = 0.0, mass = 0.05",
+        "joints.A.clearance.normal.restitution: must be greater than 0 and at most 1, is 0.0",
+    ),
+    (
         "poisson = 0.3",
         "poisson = 0.3, exponent = 0.5",
         "joints.A.clearance.normal.exponent: must be at least 1, is 0.5",
@@ -415,8 +450,10 @@ fn each_bad_input_gives_its_one_complaint() {
 fn with_words(expected: &str) -> String {
     let words = |words: Vec<&str>| format!("one of {}", quoted(&words).join(", "));
     let of = |kinds: &[&crate::parameter::Kind]| words(kinds.iter().map(|k| k.word).collect());
-    let laws = Damping::ALL.iter().map(|(word, _)| *word).collect();
+    let viscous = crate::contact::viscous::KINDS.iter().map(|kind| kind.word);
+    let laws = Damping::ALL.iter().map(|(word, _)| *word).chain(viscous).collect();
     let expected = expected.replace("{joints}", &of(crate::joint::KINDS));
+    let expected = expected.replace("{elastics}", &of(crate::contact::elastic::KINDS));
     let expected = expected.replace("{frictions}", &of(crate::friction::KINDS));
     expected.replace("{loads}", &of(crate::load::KINDS)).replace("{laws}", &words(laws))
 }

@@ -5,8 +5,8 @@ mod changes;
 mod complaints;
 
 use super::*;
-use crate::contact::Damping;
-use crate::model::{Model, StiffnessDescription, Tension};
+use crate::contact::elastic::ElasticLaw;
+use crate::model::{Model, Tension};
 use crate::scalar::Decimal;
 use std::fs;
 use std::path::PathBuf;
@@ -68,9 +68,10 @@ fn the_paper_s_case_a_is_read_as_it_is_written() {
     assert_eq!(d.bodies[1].mass.to_string(), "0.0737");
     assert_eq!(d.bodies[1].points[0].at[0].to_string(), "-0.09");
     let clearance = d.joints[1].clearance.as_ref().unwrap();
-    assert_eq!(clearance.normal.law, Damping::LankaraniNikravesh);
-    assert_eq!(clearance.normal.stiffness, StiffnessDescription::HertzPrinted);
-    assert_eq!(clearance.normal.exponent.to_string(), "1.5");
+    assert_eq!(clearance.normal.law.word(), "lankarani-nikravesh");
+    assert!(clearance.normal.elastic.is("power"));
+    assert_eq!(clearance.normal.elastic.text("stiffness"), "hertz-printed");
+    assert_eq!(clearance.normal.elastic.number::<f64>("exponent"), 1.5);
     assert_eq!(clearance.tension, Tension::Keep);
     assert_eq!(clearance.minimum_impact_rate.to_string(), "1e-3");
     assert!(d.joints[0].part.is("revolute") && d.joints[0].clearance.is_none());
@@ -89,6 +90,7 @@ fn defaults_taken_are_told() {
         "joints.A.clearance.tension = \"keep\"",
         "joints.A.clearance.minimum_impact_rate = 1e-3",
         "joints.A.clearance.maximum_penetration = 0.5",
+        "joints.A.clearance.normal.elastic = \"power\"",
         "joints.A.clearance.normal.exponent = 1.5",
         "drives.crank.kind = \"speed\"",
         "solver.norm = \"ode15s\"",
@@ -120,7 +122,10 @@ fn materials_are_one_or_two_with_the_bearing_s_first() {
         let text = FOUR_BAR_A.replacen("young = 207e9, poisson = 0.3", materials, 1);
         Model::<f64>::new(&read(&text).unwrap().description).unwrap().clearances()[0]
             .normal
-            .stiffness()
+            .elastic()
+            .power()
+            .unwrap()
+            .0
     };
     let steel = stiffness("young = 207e9, poisson = 0.3");
     assert_eq!(stiffness("young = [207e9, 207e9], poisson = [0.3, 0.3]"), steel);

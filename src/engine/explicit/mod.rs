@@ -52,6 +52,10 @@ const PATIENCE: u32 = 100;
 /// anybody sees; beyond, all are taken from its begin.
 const TIGHT: f64 = 1e-10;
 
+/// Steps over the relaxation of inner states, at most, where numbers carry a derivative: no error tells
+/// of a derivative that a step beyond the method's stability (some 6) makes larger and larger.
+const STABLE: f64 = 3.0;
+
 /// Steps between two looks at how far the simulation has come, ...
 const STRETCH: u64 = 100_000;
 /// ... and steps to the end, at the pace of the last stretch, from which on it is hopeless.
@@ -456,6 +460,10 @@ impl<S: Scalar, Y: System<S>> Engine<S> for Explicit<S, Y> {
         }
         self.revise_roots().map_err(|fault| self.fault(fault))?;
         self.next = self.next.min(self.length_of(self.options.max_step));
+        let relaxation = self.flow.system.inner_relaxation();
+        if S::CARRIES_DERIVATIVE && relaxation > 0.0 {
+            self.next = self.next.min(self.length_of(STABLE / relaxation));
+        }
         std::mem::swap(&mut self.from, &mut self.here);
         let advance = match self.advance(end) {
             Ok(advance) => advance,
