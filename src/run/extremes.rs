@@ -38,6 +38,8 @@ const CLEARLY: f64 = 1.25;
 const HARMONIC: f64 = 2.0;
 /// Stations nearer to each other than this part of the step tell nothing of slopes.
 const NEAR: f64 = 2e-2;
+/// Stations nearer to each other than this part of the panel are the same.
+const SAME: f64 = 1e-6;
 /// Stations before the present step that are remembered.
 const MEMORY: usize = 3;
 /// A revolution that has not begun by more than this part of one has not begun.
@@ -528,7 +530,8 @@ impl Tracker {
             };
             for _ in 0..MOST_LOOKS {
                 let Some(aim) = next else { break };
-                let known = self.sketches.iter().position(|sketch| sketch.time == aim);
+                let same = |sketch: &Station| (sketch.time - aim).abs() <= SAME * width;
+                let known = self.sketches.iter().position(same);
                 let known = match known {
                     Some(known) => known,
                     None => {
@@ -538,7 +541,8 @@ impl Tracker {
                         self.sketches.len() - 1
                     }
                 };
-                bracket.take((aim, sign * self.sketches[known].values[place]));
+                let Station { time, values, .. } = &self.sketches[known];
+                bracket.take((*time, sign * values[place]));
                 next = bracket.next(width, bracket.top() + slack);
             }
             let Some(summit) = bracket.best else { return Ok(()) };
@@ -546,6 +550,16 @@ impl Tracker {
                 return Ok(());
             }
             (aim, expected) = summit;
+            // a look that others have had beside it tells as much as one of its own
+            let beside = |glance: &&Station| (glance.time - aim).abs() <= NEAR * width;
+            if let Some(glance) = self.glances.iter().find(beside) {
+                let drawn = parabola(bracket.left, summit, bracket.right, glance.time);
+                let mut places = panel.bracket(drawn);
+                places.take((glance.time, sign * glance.values[place]));
+                if !places.may_pass(self.bar(place, sign) - (summit.1 - drawn).abs()) {
+                    return Ok(());
+                }
+            }
         }
         if let Some(mut bracket) = seen(&self.glances, aim) {
             if bracket.next(width, self.bar(place, sign)).is_none() {
@@ -602,6 +616,15 @@ impl Tracker {
         }
     }
 
+    /// What is rounding of a measure.
+    fn rounding(&self, place: usize) -> f64 {
+        let unit = self.units[place];
+        let [linear, angular, force, torque] = self.magnitudes;
+        let by_length = [angular, linear, torque, force][unit];
+        let factor = if unit == 0 || unit == 3 { self.length } else { 1.0 / self.length };
+        ROUNDING * self.magnitudes[unit].max(factor * by_length)
+    }
+
     /// What counts as beating the records of a measure.
     fn raise(&mut self, place: usize) {
         let largest = self.row.largest[place].value;
@@ -609,11 +632,7 @@ impl Tracker {
         let magnitude = largest.abs().max(smallest.abs());
         let unit = self.units[place];
         self.magnitudes[unit] = self.magnitudes[unit].max(magnitude);
-        let [linear, angular, force, torque] = self.magnitudes;
-        let by_length = [angular, linear, torque, force][unit];
-        let factor = if unit == 0 || unit == 3 { self.length } else { 1.0 / self.length };
-        let of_unit = self.magnitudes[unit].max(factor * by_length);
-        let slack = LEFT_OUT * magnitude + ROUNDING * of_unit;
+        let slack = LEFT_OUT * magnitude + self.rounding(place);
         self.high[place] = largest + slack;
         if place < self.row.smallest.len() {
             self.low[place] = smallest - slack;
@@ -781,7 +800,7 @@ impl Panel {
         }
         seen.sort_by(|a, b| a.0.total_cmp(&b.0));
         // differences over less than that are rounding
-        seen.dedup_by(|a, b| a.0 - b.0 <= 1e-6 * (right - left));
+        seen.dedup_by(|a, b| a.0 - b.0 <= SAME * (right - left));
         let best = (0..seen.len()).max_by(|a, b| seen[*a].1.total_cmp(&seen[*b].1))?;
         let (before, after) = (seen.get(best.checked_sub(1)?)?, seen.get(best + 1)?);
         let (before, best_place, after) = (*before, seen[best], *after);
@@ -887,7 +906,7 @@ impl Bracket {
     fn next(&mut self, width: f64, bar: f64) -> Option<f64> {
         let Bracket { left, right, best, missed, .. } = *self;
         let best = best?;
-        if right.0 - left.0 < 1e-6 * width {
+        if right.0 - left.0 < SAME * width {
             return None;
         }
         let (aim, height) = vertex(left, best, right)?;
