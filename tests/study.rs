@@ -513,3 +513,61 @@ fn a_study_can_be_made_without_the_program() {
     assert_eq!(rows[0][3..], rows[1][3..], "the trajectory does not depend on the samples");
     assert!(Path::new(&done.tables[0]).exists());
 }
+
+#[test]
+fn a_study_is_drawn() {
+    let one = "[[vary]]\nkey = \"joints.A.clearance.radial\"\nfrom = 1e-4\nto = 1e-3\ncount = 4\nspacing = \"log\"\n\
+               [span]\nrevolutions = 33\ndiscard = 2\n[section]\n\
+               [keep]\nrevolutions = [\"columns.joint_force.A.largest\", \"clearances.A.contacts\"]\n\
+               runs = [\"clearances.A.dissipated\"]\n";
+    let desk = Desk::new("four-bar-a", one);
+    assert_code(&desk.sweep("-o one"), 0);
+    fs::write(
+        desk.path("study.toml"),
+        fs::read_to_string(desk.path("study.toml")).unwrap().replace(one, GRID),
+    )
+    .unwrap();
+    assert_code(&desk.sweep("-o grid"), 4);
+    let _alone = alone();
+    let plot = |line: &str| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_freeplay"));
+        command
+            .arg("plot")
+            .args(line.split_whitespace())
+            .current_dir(desk.0.path())
+            .output()
+            .unwrap()
+    };
+    assert_code(&plot("one -o figures"), 0);
+    assert_code(&plot("grid -o figures --only heat-map --format svg,png,pdf"), 0);
+    for (name, words) in [
+        ("response-columns.joint_force.A.largest", "9 of 10 revolutions"),
+        ("response-clearances.A.contacts", "Contacts in A"),
+        ("response-clearances.A.dissipated", "Dissipated in A (J)"),
+        ("bifurcation-clearance_x.A", "Radial clearance of A (mm)"),
+        ("bifurcation-columns.joint_force.A.largest", "Largest force in A (kN)"),
+        ("histogram-columns.joint_force.A.largest", "Share of revolutions"),
+        ("poincare-A", "0.1 mm"),
+        ("heat-map-columns.joint_force.A.largest", "Speed (rpm)"),
+    ] {
+        let svg = fs::read_to_string(desk.path("figures").join(format!("{name}.svg"))).unwrap();
+        let svg = svg.replace("</tspan>", "");
+        let plain: String =
+            svg.split('<').map(|part| part.split_once('>').map_or("", |p| p.1)).collect();
+        assert!(plain.contains(words), "{name}: {plain}");
+        assert!(!svg.contains("NaN"), "{name}");
+    }
+    assert!(desk.path("figures/heat-map-clearances.A.contacts.pdf").exists());
+    assert!(!desk.path("figures/response-run.svg").exists());
+    let said = plot("one grid -o more");
+    assert_code(&said, 2);
+    assert!(errors(&said).contains("a study is drawn by itself"), "{}", errors(&said));
+    fs::create_dir(desk.path("empty")).unwrap();
+    let said = plot("empty -o more");
+    assert_code(&said, 2);
+    assert!(errors(&said).contains("empty/runs.parquet"), "{}", errors(&said));
+    // what is no table of a study is said to be none
+    fs::write(desk.path("one/runs.parquet"), "PAR1 nothing").unwrap();
+    assert_code(&plot("one -o more"), 2);
+    assert!(!desk.path("more").exists());
+}

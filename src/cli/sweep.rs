@@ -239,14 +239,18 @@ fn failure(error: Error, arguments: &Arguments, signals: &Signals, folder: &Path
         folder.display()
     );
     let code = match &error {
-        Error::Interrupted => signals.exit_code().unwrap_or(130),
         Error::Folder { .. }
         | Error::Pack { .. }
         | Error::Output(_)
         | Error::Table(_)
         | Error::OtherStudy { .. } => 3,
         Error::Missing { .. } => 1,
-        _ => 2,
+        // what fails once a signal has come fails for that
+        error => match (signals.exit_code(), error) {
+            (Some(code), _) => code,
+            (None, Error::Interrupted) => 130,
+            (None, _) => 2,
+        },
     };
     let lasting = matches!(error, Error::OtherStudy { .. } | Error::Folder { .. });
     let again = code > 2 && !lasting;

@@ -8,7 +8,7 @@ use super::quantity::Unit;
 use super::sheet::{Height, SINGLE_COLUMN, Sheet};
 use super::svg::Stroke;
 use super::text::Text;
-use super::{Figure, Figures, Options};
+use super::{DESCRIPTION, Figure, Figures, Options};
 use crate::contact::{Damping, force_loop};
 
 /// Hertz's exponent.
@@ -19,7 +19,7 @@ const MOMENTS: usize = 401;
 /// Draws the loops of some laws at a nominal restitution, as many to a panel as have a line of their
 /// own, beside the elastic one.
 pub fn draw_laws(laws: &[Damping], restitution: f64, options: &Options) -> Vec<Figure> {
-    let mut figures = Figures { options, drawn: Vec::new() };
+    let mut figures = Figures { options, description: DESCRIPTION, drawn: Vec::new() };
     let loops: Vec<(Damping, Vec<[f64; 2]>)> = (laws.iter())
         .map(|law| (*law, force_loop(law.weight(restitution), EXPONENT, MOMENTS)))
         .collect();

@@ -2,7 +2,7 @@
 //!
 //! A run of a study is the case with changes, as `--set` makes them. It happens in memory; what is
 //! kept of it, numbers of its summary and section points, is on the disk as soon as it is over
-//! ([`pack`]). The tables are made of that in the order of the runs, so that nobody can see from them
+//! (`pack.rs`). The tables are made of that in the order of the runs, so that nobody can see from them
 //! how many threads or processes there were, or how often they were killed.
 
 mod pack;

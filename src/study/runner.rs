@@ -185,6 +185,10 @@ impl<'a> Runner<'a> {
             },
             Err(why) => Err(why),
         };
+        // a request to stop may be behind whatever went wrong, or is missing
+        if halt::is_asked() {
+            return Ok(None);
+        }
         Ok(Some(Record { identity, outcome }))
     }
 
@@ -225,6 +229,8 @@ impl<'a> Runner<'a> {
             Err(_) if halt::is_asked() => return Err(Stopped::Interrupted),
             Err(error) => return Err(failed(error)),
         }
+        let turns = (schedule.duration::<f64>() / period + ROUNDING) as u64;
+        self.revolutions.fetch_add(turns.saturating_sub(turned), Ordering::Relaxed);
         let Kept { contacts, revolutions, energies, sections, witness, .. } = kept;
         let horizon = witness.map(|witness| {
             let reach = Reach { to_the_end: false, run_steps: steps };
