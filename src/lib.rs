@@ -43,6 +43,7 @@ pub mod advice;
 pub mod certify;
 pub mod post;
 pub mod export;
+pub mod study;
 pub mod compare;
 pub mod figure;
 pub mod report;

@@ -1,6 +1,7 @@
 //! What the command line changes in a case: `--set KEY=VALUE` and `--ideal`.
 
 use crate::model::{Complaint, KeyPath};
+use std::fmt;
 use std::str::FromStr;
 use toml_edit::{DocumentMut, InlineTable, Item, Key, TableLike, Value};
 
@@ -45,6 +46,12 @@ impl Override {
     /// The key.
     pub fn key(&self) -> &KeyPath {
         &self.key
+    }
+}
+
+impl fmt::Display for Override {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}={}", self.key, self.value.to_string().trim())
     }
 }
 

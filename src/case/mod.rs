@@ -16,13 +16,14 @@ mod tests;
 pub use changes::{Changes, NotAnOverride, Override};
 pub use error::Error;
 pub use plan::{AbsoluteTolerance, EngineName, NormName, Plan, Precision, Sampling, SolverPlan};
-pub use schema::{schema, tables};
+pub use schema::{schema, tables, unit_of};
 pub use source::{Located, Place};
 
 use crate::model::{Complaint, Complaints, Description, KeyPath, check};
 use source::Source;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use table_reader::{Findings, TableReader};
+use toml_edit::DocumentMut;
 
 /// A case, read and checked as far as it can be without mechanics.
 #[derive(Debug, Clone)]
@@ -65,18 +66,17 @@ impl Case {
     /// # Errors
     /// The text is not TOML, or does not describe a mechanism.
     pub fn from_text(path: &Path, text: &str, changes: &Changes) -> Result<Case, Error> {
-        let source = Source::new(path, text, &changes.set)?;
-        let mut document = source::parse(path, text)?;
-        let mut text = text.to_owned();
-        if !changes.is_empty() {
-            let complaints = changes.apply(&mut document);
-            if !complaints.is_empty() {
-                return Err(source.reject(complaints));
-            }
-            // What is recorded as run is what is run: the changed text is read like any other.
-            text = document.to_string();
-            document = source::parse(path, &text)?;
-        }
+        let template = Template::new(path, text)?;
+        template.case(template.resolve(changes)?, changes)
+    }
+
+    /// Checks what a document says.
+    fn of(
+        path: &Path,
+        text: String,
+        document: &DocumentMut,
+        source: Source,
+    ) -> Result<Case, Error> {
         let stem = path.file_stem().map_or(String::new(), |stem| stem.to_string_lossy().into());
         let mut findings = Findings::default();
         let (name, title, description, mut plan) =
@@ -99,6 +99,66 @@ impl Case {
     /// The error that tells complaints about this case, each with its place in what was written.
     pub fn reject(&self, complaints: Vec<Complaint>) -> Error {
         self.source.reject(complaints)
+    }
+}
+
+/// The text of a case file, from which cases are made that differ in some keys.
+#[derive(Debug, Clone)]
+pub struct Template {
+    path: PathBuf,
+    text: String,
+    document: DocumentMut,
+    source: Source,
+}
+
+impl Template {
+    /// Reads a case file.
+    ///
+    /// # Errors
+    /// The file cannot be read, or is not TOML.
+    pub fn read(path: &Path) -> Result<Self, Error> {
+        Template::new(path, &source::read_text(path)?)
+    }
+
+    /// Of the text of a case file; `path` gives the default name, and errors tell it.
+    ///
+    /// # Errors
+    /// The text is not TOML.
+    pub fn new(path: &Path, text: &str) -> Result<Self, Error> {
+        let document = source::parse(path, text)?;
+        let source = Source::new(path, text)?;
+        Ok(Template { path: path.to_owned(), text: text.to_owned(), document, source })
+    }
+
+    /// The text as it stands in the file.
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// The text with changes applied: that of a case which is run so.
+    ///
+    /// # Errors
+    /// A key cannot be set.
+    pub fn resolve(&self, changes: &Changes) -> Result<String, Error> {
+        if changes.is_empty() {
+            return Ok(self.text.clone());
+        }
+        let mut document = self.document.clone();
+        let complaints = changes.apply(&mut document);
+        if !complaints.is_empty() {
+            return Err(self.source.overridden(&changes.set).reject(complaints));
+        }
+        Ok(document.to_string())
+    }
+
+    /// The case of a text that [`Template::resolve`] made with these changes.
+    ///
+    /// # Errors
+    /// The text does not describe a mechanism.
+    pub fn case(&self, resolved: String, changes: &Changes) -> Result<Case, Error> {
+        // what is recorded as run is what is run: the changed text is read like any other
+        let document = source::parse(&self.path, &resolved)?;
+        Case::of(&self.path, resolved, &document, self.source.overridden(&changes.set))
     }
 }
 

@@ -228,6 +228,38 @@ fn table(text: &mut String, title: &str, about: &str, schema: &Value) {
     }
 }
 
+/// The unit of a dotted key, `joints.A.clearance.radial`: m; `None` where it has none.
+pub fn unit_of(key: &str) -> Option<String> {
+    let schema = schema();
+    let keys = toml_edit::Key::parse(key).ok()?;
+    let mut here = vec![&schema];
+    for key in &keys {
+        let below = here.into_iter().flat_map(|at| alternatives(&schema, at));
+        here = below.filter_map(|at| below_of(at, key.get())).collect();
+    }
+    here.into_iter().find_map(|at| {
+        let (_, behind) = at["description"].as_str()?.split_once('(')?;
+        let (unit, _) = behind.split_once(')')?;
+        let about_numbers = takes(at).contains("number");
+        about_numbers.then(|| unit.replace("revolutions a minute", "rpm"))
+    })
+}
+
+/// A part of the schema, or those of which it is one.
+fn alternatives<'s>(schema: &'s Value, at: &'s Value) -> Vec<&'s Value> {
+    let at = match at["$ref"].as_str().and_then(|to| to.strip_prefix("#/$defs/")) {
+        Some(name) => &schema["$defs"][name],
+        None => at,
+    };
+    at["oneOf"].as_array().map_or(vec![at], |kinds| kinds.iter().collect())
+}
+
+/// What a key leads to.
+fn below_of<'s>(at: &'s Value, key: &str) -> Option<&'s Value> {
+    let named = at["properties"].get(key);
+    named.or_else(|| at.get("additionalProperties").filter(|any| any.is_object()))
+}
+
 /// What a value is, in words.
 fn takes(value: &Value) -> String {
     if let Some(word) = value["const"].as_str() {

@@ -6,6 +6,7 @@ use std::fmt;
 use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use toml_edit::{Document, DocumentMut, TableLike, TomlError};
 
 /// Largest case file that is read (bytes). Case files are a few thousand bytes long; this keeps a
@@ -46,21 +47,33 @@ fn line_at(text: &[u8], position: usize) -> usize {
 /// Where each key of a case was written: in the file, or with `--set`.
 #[derive(Debug, Clone)]
 pub(super) struct Source {
+    written: Arc<Written>,
+    overrides: Vec<KeyPath>,
+}
+
+/// A case file as it was written.
+#[derive(Debug)]
+struct Written {
     path: PathBuf,
     file: Document<String>,
     /// Where each line begins.
     lines: Vec<usize>,
-    overrides: Vec<KeyPath>,
 }
 
 impl Source {
     /// The source of a case whose file at `path` has this text.
-    pub fn new(path: &Path, text: &str, overrides: &[Override]) -> Result<Source, Error> {
+    pub fn new(path: &Path, text: &str) -> Result<Source, Error> {
         let file = Document::parse(text.to_owned()).map_err(|error| syntax(path, text, &error))?;
-        let overrides = overrides.iter().map(|set| set.key().clone()).collect();
         let ends = text.bytes().enumerate().filter(|(_, byte)| *byte == b'\n');
         let lines = std::iter::once(0).chain(ends.map(|(end, _)| end + 1)).collect();
-        Ok(Source { path: path.to_owned(), file, lines, overrides })
+        let written = Arc::new(Written { path: path.to_owned(), file, lines });
+        Ok(Source { written, overrides: Vec::new() })
+    }
+
+    /// The same with keys set on the command line.
+    pub fn overridden(&self, overrides: &[Override]) -> Source {
+        let overrides = overrides.iter().map(|set| set.key().clone()).collect();
+        Source { written: Arc::clone(&self.written), overrides }
     }
 
     /// The error that tells these complaints, each with its place, in the order of the file.
@@ -69,7 +82,7 @@ impl Source {
             |complaint: Complaint| Located { place: self.place(&complaint.key), complaint };
         let mut complaints: Vec<Located> = complaints.into_iter().map(locate).collect();
         complaints.sort_by(|a, b| a.place.cmp(&b.place));
-        Error::NotAMechanism { path: self.path.clone(), complaints }
+        Error::NotAMechanism { path: self.written.path.clone(), complaints }
     }
 
     /// Where a key, or the table that lacks it, was written.
@@ -92,13 +105,14 @@ impl Source {
     /// The line in the file of the key at this path.
     fn line(&self, keys: &[String]) -> Option<usize> {
         let (last, parents) = keys.split_last()?;
-        let mut table: &dyn TableLike = self.file.as_table();
+        let Written { file, lines, .. } = &*self.written;
+        let mut table: &dyn TableLike = file.as_table();
         for parent in parents {
             table = table.get(parent)?.as_table_like()?;
         }
         let (key, item) = table.get_key_value(last)?;
         let span = key.span().or_else(|| item.span())?;
-        Some(self.lines.partition_point(|begin| *begin <= span.start))
+        Some(lines.partition_point(|begin| *begin <= span.start))
     }
 }
 

@@ -17,6 +17,7 @@ mod schema;
 mod shown;
 mod signals;
 mod summary;
+mod sweep;
 mod version;
 
 use crate::case::{Case, Changes, Override};
@@ -49,6 +50,8 @@ enum Command {
     Info(info::Arguments),
     /// Say what a result file shows: peaks, ratios to the ideal mechanism, contacts, energies.
     Summary(summary::Arguments),
+    /// Run a case many times with some of its keys varied, into tables.
+    Sweep(sweep::Arguments),
     /// Say how far a trajectory agrees with a reference, in digits over time.
     Compare(compare::Arguments),
     /// Draw the figures of result files, as journals print them.
@@ -97,6 +100,9 @@ impl CaseArguments {
         Case::read(&self.path, &Changes { set, ideal: self.ideal }).map_err(Failure::input)
     }
 }
+
+/// Exit code of what did not come to its end and can be tried again (sysexits.h: EX_TEMPFAIL).
+const TRY_AGAIN: u8 = 75;
 
 /// Why a command fails, and the exit code that says so.
 #[derive(Debug)]
@@ -196,6 +202,7 @@ pub fn main() -> ExitCode {
         Command::Check(arguments) => check::check(&arguments),
         Command::Info(arguments) => info::info(&arguments),
         Command::Summary(arguments) => summary::summary(&arguments),
+        Command::Sweep(arguments) => sweep::sweep(&arguments),
         Command::Compare(arguments) => compare::compare(&arguments),
         Command::Plot(arguments) => plot::plot(&arguments),
         Command::Export(arguments) => export::export(&arguments),
@@ -211,7 +218,7 @@ pub fn main() -> ExitCode {
         Err(failure) => {
             failure.tell();
             // what fails once a signal has come fails for that, but for an output that is lost
-            let code = signals::exit_code().filter(|_| failure.code != 3);
+            let code = signals::exit_code().filter(|_| ![3, TRY_AGAIN].contains(&failure.code));
             ExitCode::from(code.unwrap_or(failure.code))
         }
     }

@@ -4,6 +4,7 @@ use super::{Failure, laws, signals};
 use crate::figure::{self, Figure, Format, Options, Over};
 use crate::model::did_you_mean;
 use crate::record::{self, Draft, ResultFile};
+use crate::study::Recorded;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -11,7 +12,8 @@ use std::path::{Path, PathBuf};
 /// Arguments of `plot`.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// Result files (HDF5); one without clearances is drawn dashed beside the others.
+    /// Result files (HDF5); one without clearances is drawn dashed beside the others. Or the folder of
+    /// a study.
     #[arg(value_name = "FILE", required_unless_present = "law", conflicts_with = "law")]
     files: Vec<PathBuf>,
     /// Draw force over penetration in one impact by these laws of the normal force, names with commas
@@ -125,7 +127,10 @@ enum PlotError {
 /// Draws the figures of result files.
 pub(super) fn plot(arguments: &Arguments) -> Result<(), Failure> {
     signals::end_at_once()?;
-    let figures = if arguments.law.is_empty() {
+    let figures = if let Some(folder) = study_folder(&arguments.files).map_err(Failure::input)? {
+        let recorded = Recorded::open(folder).map_err(Failure::input)?;
+        figure::draw_study(&recorded, &options(arguments)).map_err(Failure::input)?
+    } else if arguments.law.is_empty() {
         let files = arguments.files.iter().map(|path| ResultFile::open(path));
         let files = files.collect::<Result<Vec<_>, _>>().map_err(Failure::input)?;
         figure::draw(files, &options(arguments)).map_err(Failure::input)?
@@ -140,6 +145,22 @@ pub(super) fn plot(arguments: &Arguments) -> Result<(), Failure> {
     let written = write(&figures, &formats, &arguments.output, arguments.force, &inputs)?;
     let (count, folder) = (figures.len(), arguments.output.display());
     super::print(format_args!("{folder}: {count} figures, {written} files\n"))
+}
+
+/// Something was asked for together with the folder of a study.
+#[derive(Debug, thiserror::Error)]
+#[error("{} is a folder: a study is drawn by itself", path.display())]
+struct NotByItself {
+    path: PathBuf,
+}
+
+/// The folder of the study that is to be drawn, if it is one.
+fn study_folder(files: &[PathBuf]) -> Result<Option<&Path>, NotByItself> {
+    match (files, files.iter().find(|path| path.is_dir())) {
+        (_, None) => Ok(None),
+        ([folder], Some(_)) => Ok(Some(folder)),
+        (_, Some(path)) => Err(NotByItself { path: path.clone() }),
+    }
 }
 
 /// The figures that are asked for by name or kind; all if none is.

@@ -1,7 +1,7 @@
 //! `freeplay run CASE`
 
 use super::signals::Signals;
-use super::{CaseArguments, Failure, chain};
+use super::{CaseArguments, Failure, TRY_AGAIN, chain};
 use crate::case::{Case, Changes, Precision};
 use crate::certify::{
     self, Companion, CrossCheck, Disagreement, Errand, Horizon, LEAST_DIGITS, ONE_DRAW, Reach,
@@ -458,15 +458,12 @@ fn simulate_into(
     Err(Failure { rest: Some(rest), ..Failure::with(code, error) })
 }
 
-/// Exit code of a run that has stopped where it was asked to (sysexits.h: EX_TEMPFAIL, try again).
-const STOPPED: u8 = 75;
-
 /// A run has stopped at a checkpoint, as it was asked to.
 fn stopped(writer: &Segmented, time: f64) -> Failure {
     let (kept, folder) = writer.segments().unwrap_or((0, Path::new(".")));
     let segments = if kept == 1 { "segment is" } else { "segments are" };
     Failure::stop(
-        STOPPED,
+        TRY_AGAIN,
         format!(
             "stopped at the checkpoint at t = {}, as --stop-after has it; {kept} {segments} in {}; \
              --resume goes on",

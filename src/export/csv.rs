@@ -1,40 +1,48 @@
 //! Comma-separated values: a line of column names, then a line a row. Numbers are the shortest
 //! that read back as the same doubles; what is unknown is `NaN`.
 
-use super::{Columns, WriteError};
-use crate::record::{ResultFile, Values};
+use super::table::{Cells, Field};
 use std::fmt::Write;
+use std::fs::File;
 use std::path::Path;
 
-/// Rows that are read at a time.
-const BLOCK: usize = 8 * 4096;
+/// A file of comma-separated values that is being written.
+pub(crate) struct Csv(csv::Writer<File>);
 
-/// Writes a table to an empty file.
-pub(super) fn write(file: &ResultFile, columns: &Columns, path: &Path) -> Result<(), WriteError> {
-    let mut writer = csv::Writer::from_path(path).map_err(WriteError::write)?;
-    let names = columns.columns.iter().map(|column| &column.name);
-    writer.write_record(names).map_err(WriteError::write)?;
-    let mut field = String::new();
-    for rows in columns.blocks(BLOCK) {
-        let values = columns.read(file, rows.clone())?;
-        for row in 0..rows.len() {
-            for (column, values) in columns.columns.iter().zip(&values) {
-                field.clear();
-                let value = values[row];
-                let written = match (column.word(value), column.values) {
-                    // a spreadsheet would reckon with what begins so, a quote makes it text
-                    (Some(word), _) if word.starts_with(['=', '+', '-', '@']) => {
-                        write!(field, "'{word}")
-                    }
-                    (Some(word), _) => field.write_str(word),
-                    (None, Values::Real) => write!(field, "{value:?}"),
-                    (None, _) => write!(field, "{value}"),
-                };
-                written.map_err(WriteError::write)?;
-                writer.write_field(&field).map_err(WriteError::write)?;
-            }
-            writer.write_record(None::<&[u8]>).map_err(WriteError::write)?;
-        }
+impl Csv {
+    /// Begins a table in an empty file.
+    pub fn create(path: &Path, fields: &[Field]) -> Result<Self, csv::Error> {
+        let mut writer = csv::Writer::from_path(path)?;
+        writer.write_record(fields.iter().map(|field| &field.name))?;
+        Ok(Csv(writer))
     }
-    writer.flush().map_err(WriteError::write)
+
+    /// Writes some rows: the cells of each column.
+    pub fn write(&mut self, columns: &[Cells]) -> Result<(), csv::Error> {
+        let rows = columns.first().map_or(0, Cells::len);
+        let mut field = String::new();
+        for row in 0..rows {
+            for cells in columns {
+                field.clear();
+                // writing to a string cannot fail
+                let _ = match cells {
+                    // a spreadsheet would reckon with what begins so, a quote makes it text
+                    Cells::Text(words) if words[row].starts_with(['=', '+', '-', '@']) => {
+                        write!(field, "'{}", words[row])
+                    }
+                    Cells::Text(words) => field.write_str(&words[row]),
+                    Cells::Real(values) => write!(field, "{:?}", values[row]),
+                    Cells::Whole(values) => write!(field, "{}", values[row]),
+                };
+                self.0.write_field(&field)?;
+            }
+            self.0.write_record(None::<&[u8]>)?;
+        }
+        Ok(())
+    }
+
+    /// Ends the table.
+    pub fn finish(mut self) -> Result<(), csv::Error> {
+        Ok(self.0.flush()?)
+    }
 }

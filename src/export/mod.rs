@@ -4,6 +4,7 @@ mod columns;
 mod csv;
 mod openmbv;
 mod parquet;
+mod table;
 
 use crate::post;
 use crate::record::{self, Draft, ResultFile};
@@ -11,6 +12,7 @@ use std::error::Error as StdError;
 use std::path::{Path, PathBuf};
 
 pub use columns::{Column, Columns, TableName};
+pub(crate) use table::{Cells, Field, GROUP, Holds, Kind, Table};
 
 /// Formats that a result file can be written in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -82,8 +84,8 @@ pub fn export(
 ) -> Result<Written, Error> {
     let columns = Columns::of(file, table);
     match format {
-        Format::Csv => publish(file, output, force, &columns, csv::write),
-        Format::Parquet => publish(file, output, force, &columns, parquet::write),
+        Format::Csv => publish(file, output, force, &columns, Kind::Csv),
+        Format::Parquet => publish(file, output, force, &columns, Kind::Parquet),
         Format::OpenMbv => openmbv::write(file, output, force),
     }
 }
@@ -94,22 +96,22 @@ fn publish(
     output: &Path,
     force: bool,
     columns: &Columns,
-    write: impl FnOnce(&ResultFile, &Columns, &Path) -> Result<(), WriteError>,
+    kind: Kind,
 ) -> Result<Written, Error> {
     let draft = Draft::create_from(output, force, &[file.path()]).map_err(Error::Output)?;
-    write(file, columns, draft.temporary()).map_err(|error| error.at(output))?;
+    table::write(kind, file, columns, draft.temporary()).map_err(|error| error.at(output))?;
     let path = draft.publish().map_err(Error::Output)?;
     Ok(Written { paths: vec![path], rows: columns.rows, columns: columns.columns.len() })
 }
 
 /// What a format meets while it writes.
-enum WriteError {
+pub(crate) enum WriteError {
     Read(record::Error),
     Write(Box<dyn StdError + Send + Sync>),
 }
 
 impl WriteError {
-    fn at(self, output: &Path) -> Error {
+    pub fn at(self, output: &Path) -> Error {
         match self {
             WriteError::Read(error) => Error::Read(error),
             WriteError::Write(source) => Error::Write { path: output.to_owned(), source },

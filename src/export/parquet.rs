@@ -4,8 +4,7 @@
 //! object by column, and once more in `PANDAS_ATTRS`, from which pandas fills `DataFrame.attrs`.
 //! All texts of the result file's root follow: title, case, versions.
 
-use super::{Column, Columns, WriteError};
-use crate::record::{ResultFile, Values};
+use super::table::{Cells, Field, Holds};
 use parquet::basic::{Compression, LogicalType, Repetition, Type as PhysicalType};
 use parquet::data_type::{ByteArray, ByteArrayType, DoubleType, Int32Type};
 use parquet::errors::ParquetError;
@@ -18,44 +17,48 @@ use std::fs::File;
 use std::path::Path;
 use std::sync::Arc;
 
-/// Rows of a row group.
-const GROUP: usize = 16 * 4096;
+/// A Parquet file that is being written.
+pub(crate) struct Parquet(SerializedFileWriter<File>);
 
-/// Writes a table to an empty file.
-pub(super) fn write(file: &ResultFile, columns: &Columns, path: &Path) -> Result<(), WriteError> {
-    let output = File::create(path).map_err(WriteError::write)?;
-    let schema = schema(columns).map_err(WriteError::write)?;
-    let properties = Arc::new(properties(file, columns));
-    let mut writer =
-        SerializedFileWriter::new(output, schema, properties).map_err(WriteError::write)?;
-    for rows in columns.blocks(GROUP) {
-        let values = columns.read(file, rows)?;
-        let mut group = writer.next_row_group().map_err(WriteError::write)?;
-        for (column, values) in columns.columns.iter().zip(&values) {
-            if let Some(mut chunk) = group.next_column().map_err(WriteError::write)? {
-                write_column(column, values, &mut chunk).map_err(WriteError::write)?;
-                chunk.close().map_err(WriteError::write)?;
+impl Parquet {
+    /// Begins a table in an empty file, with more texts for its metadata.
+    pub fn create(
+        path: &Path,
+        fields: &[Field],
+        texts: Vec<(String, String)>,
+    ) -> Result<Self, ParquetError> {
+        let output = File::create(path)?;
+        let properties = Arc::new(properties(fields, texts));
+        Ok(Parquet(SerializedFileWriter::new(output, schema(fields)?, properties)?))
+    }
+
+    /// Writes some rows, which become a row group: the cells of each column.
+    pub fn write(&mut self, columns: &[Cells]) -> Result<(), ParquetError> {
+        let mut group = self.0.next_row_group()?;
+        for cells in columns {
+            if let Some(mut chunk) = group.next_column()? {
+                write_column(cells, &mut chunk)?;
+                chunk.close()?;
             }
         }
-        group.close().map_err(WriteError::write)?;
+        group.close().map(drop)
     }
-    writer.close().map_err(WriteError::write)?;
-    Ok(())
+
+    /// Ends the table.
+    pub fn finish(self) -> Result<(), ParquetError> {
+        self.0.close().map(drop)
+    }
 }
 
-fn schema(columns: &Columns) -> Result<Arc<Type>, ParquetError> {
-    let fields = columns.columns.iter().map(|column| {
-        let physical = match (&column.words, column.values) {
-            (Some(_), _) => PhysicalType::BYTE_ARRAY,
-            (None, Values::Real) => PhysicalType::DOUBLE,
-            (None, Values::Index | Values::Flag(_)) => PhysicalType::INT32,
+fn schema(fields: &[Field]) -> Result<Arc<Type>, ParquetError> {
+    let fields = fields.iter().map(|field| {
+        let (physical, logical) = match field.holds {
+            Holds::Real | Holds::Repeated => (PhysicalType::DOUBLE, None),
+            Holds::Index => (PhysicalType::INT32, None),
+            Holds::Flag => (PhysicalType::INT32, Some(LogicalType::integer(8, true))),
+            Holds::Text => (PhysicalType::BYTE_ARRAY, Some(LogicalType::String)),
         };
-        let logical = match (&column.words, column.values) {
-            (Some(_), _) => Some(LogicalType::String),
-            (None, Values::Flag(_)) => Some(LogicalType::integer(8, true)),
-            (None, _) => None,
-        };
-        let field = Type::primitive_type_builder(&column.name, physical)
+        let field = Type::primitive_type_builder(&field.name, physical)
             .with_repetition(Repetition::REQUIRED)
             .with_logical_type(logical)
             .build()?;
@@ -65,51 +68,48 @@ fn schema(columns: &Columns) -> Result<Arc<Type>, ParquetError> {
     Ok(Arc::new(Type::group_type_builder("freeplay").with_fields(fields).build()?))
 }
 
-fn properties(file: &ResultFile, columns: &Columns) -> WriterProperties {
+fn properties(fields: &[Field], texts: Vec<(String, String)>) -> WriterProperties {
     let mut properties = WriterProperties::builder()
         .set_compression(Compression::SNAPPY)
         .set_created_by(concat!("freeplay ", env!("CARGO_PKG_VERSION")).to_owned())
-        .set_key_value_metadata(Some(metadata(file, columns)));
-    for column in columns.columns.iter().filter(|column| column.values == Values::Real) {
-        // no two doubles of a trajectory are alike
-        let path = ColumnPath::new(vec![column.name.clone()]);
+        .set_key_value_metadata(Some(metadata(fields, texts)));
+    for field in fields.iter().filter(|field| field.holds == Holds::Real) {
+        let path = ColumnPath::new(vec![field.name.clone()]);
         properties = properties.set_column_dictionary_enabled(path, false);
     }
     properties.build()
 }
 
-fn metadata(file: &ResultFile, columns: &Columns) -> Vec<KeyValue> {
-    let by_column = |of: fn(&Column) -> &'static str| {
-        let pairs = columns.columns.iter();
-        Map::from_iter(pairs.map(|column| (column.name.clone(), Value::from(of(column)))))
+fn metadata(fields: &[Field], texts: Vec<(String, String)>) -> Vec<KeyValue> {
+    let by_column = |of: fn(&Field) -> &String| {
+        let pairs = fields.iter();
+        Map::from_iter(pairs.map(|field| (field.name.clone(), Value::from(of(field).as_str()))))
     };
-    let units = by_column(|column| column.unit);
-    let long_names = by_column(|column| column.long_name);
+    let units = by_column(|field| &field.unit);
+    let long_names = by_column(|field| &field.long_name);
     let entry = |key: &str, value: Value| KeyValue::new(key.to_owned(), value.to_string());
     let mut all = vec![
         entry("units", json!(units)),
         entry("long_names", json!(long_names)),
         entry("PANDAS_ATTRS", json!({ "units": units, "long_names": long_names })),
     ];
-    let texts = file.attributes().iter();
-    all.extend(texts.map(|(name, value)| KeyValue::new(name.clone(), value.to_string())));
+    all.extend(texts.into_iter().map(|(name, value)| KeyValue::new(name, value)));
     all
 }
 
-fn write_column(
-    column: &Column,
-    values: &[f64],
-    chunk: &mut SerializedColumnWriter<'_>,
-) -> Result<(), ParquetError> {
-    if column.words.is_some() {
-        let words = values.iter().map(|value| ByteArray::from(column.word(*value).unwrap_or("")));
-        let words: Vec<ByteArray> = words.collect();
-        chunk.typed::<ByteArrayType>().write_batch(&words, None, None)?;
-    } else if column.values == Values::Real {
-        chunk.typed::<DoubleType>().write_batch(values, None, None)?;
-    } else {
-        let whole: Vec<i32> = values.iter().map(|value| *value as i32).collect();
-        chunk.typed::<Int32Type>().write_batch(&whole, None, None)?;
+fn write_column(cells: &Cells, chunk: &mut SerializedColumnWriter<'_>) -> Result<(), ParquetError> {
+    match cells {
+        Cells::Text(words) => {
+            let words: Vec<ByteArray> =
+                words.iter().map(|word| ByteArray::from(word.as_str())).collect();
+            chunk.typed::<ByteArrayType>().write_batch(&words, None, None)?;
+        }
+        Cells::Real(values) => {
+            chunk.typed::<DoubleType>().write_batch(values, None, None)?;
+        }
+        Cells::Whole(values) => {
+            chunk.typed::<Int32Type>().write_batch(values, None, None)?;
+        }
     }
     Ok(())
 }

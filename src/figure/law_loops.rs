@@ -8,7 +8,7 @@ use super::quantity::Unit;
 use super::sheet::{Height, SINGLE_COLUMN, Sheet};
 use super::svg::Stroke;
 use super::text::Text;
-use super::{Figure, Figures, Options};
+use super::{DESCRIPTION, Figure, Figures, Options};
 use crate::contact::elastic::{Elastic, Power};
 use crate::contact::{Damping, Impact, NormalLaw, force_loop};
 
@@ -20,7 +20,7 @@ const MOMENTS: usize = 401;
 /// Draws the loops of some laws at a nominal restitution, as many to a panel as have a line of their
 /// own, beside the elastic one.
 pub fn draw_laws(laws: &[Damping], restitution: f64, options: &Options) -> Vec<Figure> {
-    let mut figures = Figures { options, drawn: Vec::new() };
+    let mut figures = Figures { options, description: DESCRIPTION, drawn: Vec::new() };
     let loops: Vec<(Damping, Vec<[f64; 2]>)> =
         (laws.iter()).map(|law| (*law, relative_loop(law.weight(restitution)))).collect();
     let elastic = relative_loop(0.0);
@@ -71,7 +71,7 @@ pub struct ImpactLoop {
 /// Draws impacts in closed form with the samples of runs over them, as many to a panel as have a line
 /// of their own.
 pub fn draw_impacts(impacts: &[ImpactLoop], options: &Options) -> Vec<Figure> {
-    let mut figures = Figures { options, drawn: Vec::new() };
+    let mut figures = Figures { options, description: DESCRIPTION, drawn: Vec::new() };
     let values =
         |axis: usize| impacts.iter().flat_map(move |i| i.exact.iter().map(move |p| p[axis]));
     let x = Axis::fitting(Text::roman("Penetration ").and_italic("δ"), "m", values(0));

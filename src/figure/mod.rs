@@ -8,6 +8,7 @@
 
 mod angular_acceleration;
 mod clearance_vector;
+mod cloud;
 mod contact_loops;
 mod contact_timeline;
 mod decimate;
@@ -31,6 +32,7 @@ mod poincare;
 mod quantity;
 mod runs;
 mod sheet;
+mod study;
 mod svg;
 mod text;
 mod ticks;
@@ -40,6 +42,7 @@ pub use encode::EncodeError;
 pub use fonts::{Font, ITALIC, ROMAN};
 pub use law_loops::{ImpactLoop, draw_impacts, draw_laws};
 pub use sheet::{DOUBLE_COLUMN, SINGLE_COLUMN};
+pub use study::draw_study;
 
 use crate::record::{self, ResultFile};
 use runs::Runs;
@@ -163,7 +166,7 @@ impl Figure {
 /// See [`Error`].
 pub fn draw(files: Vec<ResultFile>, options: &Options) -> Result<Vec<Figure>, Error> {
     let runs = Runs::read(files, options)?;
-    let mut figures = Figures { options, drawn: Vec::new() };
+    let mut figures = Figures { options, description: DESCRIPTION, drawn: Vec::new() };
     clearance_vector::draw(&runs, &mut figures)?;
     force::draw(&runs, &mut figures)?;
     drive_torque::draw(&runs, &mut figures)?;
@@ -181,6 +184,8 @@ pub fn draw(files: Vec<ResultFile>, options: &Options) -> Result<Vec<Figure>, Er
 /// The figures drawn so far.
 struct Figures<'a> {
     options: &'a Options,
+    /// What every figure says of itself.
+    description: &'static str,
     drawn: Vec<Figure>,
 }
 
@@ -200,7 +205,7 @@ impl Figures<'_> {
             sheet.width = self.options.width.unwrap_or(sheet.width);
             let wanted = if pages > 1 { format!("{base}-{}", page + 1) } else { base.clone() };
             let name = self.free_name(wanted);
-            let (svg, size) = sheet.draw(title, DESCRIPTION, self.options.outlines);
+            let (svg, size) = sheet.draw(title, self.description, self.options.outlines);
             self.drawn.push(Figure { name, kind, title: title.to_owned(), svg, size });
         }
     }
@@ -217,7 +222,7 @@ impl Figures<'_> {
     }
 }
 
-/// What every figure says of itself.
+/// What every figure of result files says of itself.
 const DESCRIPTION: &str = concat!(
     "Drawn by freeplay ",
     env!("CARGO_PKG_VERSION"),

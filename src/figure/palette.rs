@@ -27,6 +27,15 @@ pub(super) const BEYOND: &str = "#e6e6e6";
 /// Paths and points there.
 pub(super) const BEYOND_PATH: &str = "#bdbdbd";
 
+/// Ground of a band about a curve.
+pub(super) const BAND: &str = "#c6ddec";
+/// Colours of heat maps, from low to high: viridis (van der Walt, Smith 2015), whose lightness grows
+/// evenly, so that it is read in grey print.
+pub(super) const HEAT: [&str; 16] = [
+    "#440154", "#481a6c", "#472f7d", "#414487", "#39568c", "#31688e", "#2a788e", "#23888e",
+    "#1f988b", "#22a884", "#35b779", "#54c568", "#7ad151", "#a5db36", "#d2e21b", "#fde725",
+];
+
 /// Frames and ticks.
 pub(super) const FRAME: Stroke = Stroke::solid(BLACK, 0.5);
 /// Lines that only guide the eye.

@@ -1,5 +1,6 @@
 //! One panel of a figure: a frame, two axes, and what is drawn between them.
 
+use super::cloud::merged;
 use super::decimate::{Point, by_columns, by_distance};
 use super::ink::without_covered;
 use super::inset::Inset;
@@ -127,6 +128,12 @@ pub(super) enum Mark {
     Path(Vec<Point>, Stroke),
     /// Separate points.
     Dots(Vec<Point>, Dot),
+    /// Many points, of which those that cover each other are drawn once.
+    Cloud(Vec<Point>, Dot),
+    /// The ground between two curves: x, the lower and the upper y.
+    Band(Vec<[f64; 3]>, &'static str),
+    /// Filled rectangles, each from its left upper to its right lower corner.
+    Field(Vec<[Point; 2]>, &'static str),
     /// A circle about the origin.
     Circle(f64, Stroke),
     /// Bars from one place on the horizontal axis to another, in a row of names.
@@ -352,6 +359,22 @@ impl Panel {
             Mark::Dots(points, dot) => {
                 let finite = placed(points).into_iter().filter(|[x, y]| (x + y).is_finite());
                 svg.discs(finite, dot.radius, dot.colour);
+            }
+            Mark::Cloud(points, dot) => {
+                svg.path(&merged(&placed(points)), &Stroke::solid(dot.colour, 2.0 * dot.radius));
+            }
+            Mark::Band(band, colour) => {
+                let upper = band.iter().map(|[x, _, high]| place(&[*x, *high]));
+                let lower = band.iter().rev().map(|[x, low, _]| place(&[*x, *low]));
+                svg.area(&upper.chain(lower).collect::<Vec<_>>(), colour);
+            }
+            Mark::Field(fields, colour) => {
+                // a hair over each other, so that no ground is seen between them
+                let wide = |[from, to]: &[Point; 2]| {
+                    let [[left, top], [right, bottom]] = [place(from), place(to)];
+                    [[left, top], [right + 0.2, bottom + 0.2]]
+                };
+                svg.rectangles(fields.iter().map(wide), colour);
             }
             Mark::Circle(radius, stroke) => {
                 let edge = self.across(frame, *radius) - self.across(frame, 0.0);

@@ -130,6 +130,15 @@ impl Svg {
         }
     }
 
+    /// A filled area within a closed line.
+    pub fn area(&mut self, corners: &[Point], colour: &'static str) {
+        let mut data = String::new();
+        write_piece(&mut data, corners);
+        if !data.is_empty() {
+            let _ = writeln!(self.text, "<path fill=\"{colour}\" d=\"{data}Z\"/>");
+        }
+    }
+
     /// The outline of a rectangle.
     pub fn frame(&mut self, [left, top]: Point, [right, bottom]: Point, stroke: &Stroke) {
         let [left, top, right, bottom] = [left, top, right, bottom].map(number);

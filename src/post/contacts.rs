@@ -135,6 +135,7 @@ fn largest(values: impl Iterator<Item = At>) -> Option<At> {
     numbers.reduce(|largest, other| if other.value > largest.value { other } else { largest })
 }
 
+/// `contacts` and their `stretches` stand in the order of time, and do not overlap.
 fn revolution(
     k: usize,
     parts: Revolutions,
@@ -142,12 +143,15 @@ fn revolution(
     stretches: &[Stretch],
 ) -> RevolutionContacts {
     let [begin, end] = parts.bounds(k);
-    let begun = || contacts.iter().filter(|contact| parts.of(contact.begin) == k);
+    let before = |k: usize| contacts.partition_point(|contact| parts.of(contact.begin) < k);
+    let begun = &contacts[before(k)..before(k + 1)];
     let inside = |stretch: &Stretch| (stretch.end.min(end) - stretch.begin.max(begin)).max(0.0);
+    let first = stretches.partition_point(|stretch| stretch.end < begin);
+    let reaching = stretches[first..].iter().take_while(|stretch| stretch.begin <= end);
     RevolutionContacts {
-        count: begun().count(),
-        share: stretches.iter().map(inside).sum::<f64>() / (end - begin),
-        fastest: largest(begun().map(|contact| impact(contact))),
+        count: begun.len(),
+        share: reaching.map(inside).fold(0.0, |sum, part| sum + part) / (end - begin),
+        fastest: largest(begun.iter().map(|contact| impact(contact))),
     }
 }
 

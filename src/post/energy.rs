@@ -2,6 +2,7 @@
 
 use super::Error;
 use super::contacts::At;
+use crate::mechanism::EnergyObservation;
 use crate::record::ResultFile;
 
 /// Energies and works at the end of a run (J), and what the balance is off by.
@@ -32,30 +33,54 @@ impl EnergyBalance {
     /// What reading the file meets.
     pub fn of(file: &ResultFile) -> Result<Option<Self>, Error> {
         let times = file.times()?;
-        let Some(&time) = times.last() else { return Ok(None) };
-        let last = |values: &[f64]| values.last().copied().unwrap_or(f64::NAN);
-        let kinetic = file.column("energy_kinetic")?;
-        let mut stored = last(&kinetic) - kinetic[0];
-        for name in ["energy_potential", "energy_elastic"] {
-            let energy = file.column(name)?;
-            stored += last(&energy) - energy[0];
+        let column = |name| file.column(name);
+        let (kinetic, potential) = (column("energy_kinetic")?, column("energy_potential")?);
+        let (elastic, dissipated) = (column("energy_elastic")?, column("energy_dissipated")?);
+        let (drive_work, load_work) = (column("drive_work")?, column("load_work")?);
+        let residual = column("energy_residual")?;
+        let samples = times.iter().enumerate().map(|(k, &time)| {
+            let energy = EnergyObservation {
+                kinetic: kinetic[k],
+                potential: potential[k],
+                elastic: elastic[k],
+                dissipated: dissipated[k],
+                drive_work: drive_work[k],
+                load_work: load_work[k],
+                residual: residual[k],
+            };
+            (time, energy)
+        });
+        Ok(Self::of_samples(samples))
+    }
+
+    /// Of samples in the order of time, each with its time (s); `None` without any.
+    pub fn of_samples(samples: impl IntoIterator<Item = (f64, EnergyObservation)>) -> Option<Self> {
+        let mut samples = samples.into_iter().peekable();
+        let (_, first) = *samples.peek()?;
+        let (mut last, mut largest, mut kinetic) = (None, None::<At>, f64::NAN);
+        for (time, energy) in samples {
+            let off = At { value: energy.residual.abs(), time };
+            if off.value.is_finite() && largest.is_none_or(|known| off.value > known.value) {
+                largest = Some(off);
+            }
+            if energy.kinetic.is_finite() {
+                kinetic = kinetic.max(energy.kinetic);
+            }
+            last = Some((time, energy));
         }
-        let residuals = file.column("energy_residual")?;
-        let pairs = times.iter().zip(&residuals);
-        let largest = pairs
-            .map(|(time, residual)| At { value: residual.abs(), time: *time })
-            .filter(|at| at.value.is_finite())
-            .reduce(|largest, other| if other.value > largest.value { other } else { largest });
-        let numbers = kinetic.iter().copied().filter(|energy| energy.is_finite());
-        Ok(Some(EnergyBalance {
+        let (time, end) = last?;
+        let stored = (end.kinetic - first.kinetic)
+            + (end.potential - first.potential)
+            + (end.elastic - first.elastic);
+        Some(EnergyBalance {
             time,
             stored,
-            dissipated: last(&file.column("energy_dissipated")?),
-            drive_work: last(&file.column("drive_work")?),
-            load_work: last(&file.column("load_work")?),
-            residual: last(&residuals),
+            dissipated: end.dissipated,
+            drive_work: end.drive_work,
+            load_work: end.load_work,
+            residual: end.residual,
             largest_residual: largest.unwrap_or(At { value: f64::NAN, time }),
-            largest_kinetic: numbers.fold(f64::NAN, f64::max),
-        }))
+            largest_kinetic: kinetic,
+        })
     }
 }

@@ -34,20 +34,40 @@ impl RunExtremes {
         found.map(|(_, tally)| tally)
     }
 
-    /// Of a case without clearance, run on the spot until `end` (s).
+    /// Of a case without clearance, run on the spot until `end` (s), for some of its quantities.
     ///
     /// # Errors
     /// A case that describes no mechanism, or whose simulation fails.
-    pub fn of_ideal(case: &Case, end: f64) -> Result<Self, Error> {
+    pub fn of_ideal(case: &Case, end: f64, wanted: Wanted<'_>) -> Result<Self, Error> {
         let simulation = Simulation::new(case).map_err(Error::Case)?;
         if let Some(assembled) = Assembled::new(simulation.mechanism().clone()) {
-            return Self::of_assembled(assembled, end, None);
+            return Self::of_assembled(assembled, end, None, wanted);
         }
         let tolerance = case.plan.solver.relative_tolerance;
-        let mut recording = Recording::new(simulation.mechanism(), end, accuracy(tolerance));
+        let mechanism = simulation.mechanism();
+        let mut recording = Recording::new(mechanism, end, accuracy(tolerance), wanted);
         let (_, ran) = simulation.run(&mut recording, &mut |_| ControlFlow::Continue(()));
         ran.map_err(Error::Simulation)?;
         Ok(recording.into_extremes())
+    }
+
+    /// Of what a run found in its revolutions, to its relative tolerance.
+    pub fn of_revolutions(
+        names: &Names,
+        revolutions: &[Revolution],
+        tolerance: f64,
+        parts: Option<Revolutions>,
+        wanted: Wanted<'_>,
+    ) -> Self {
+        let accuracy = accuracy(tolerance);
+        let quantities = wanted.of(names).into_iter().map(|quantity| {
+            let mut tally = Tally::new(parts, quantity.is_signed());
+            for (k, revolution) in revolutions.iter().enumerate() {
+                tally.take_found(k, revolution, quantity, accuracy);
+            }
+            (quantity, tally)
+        });
+        RunExtremes { quantities: quantities.collect(), names: names.clone() }
     }
 
     /// Of a mechanism that can be evaluated at any time, from 0 to `end` (s).
@@ -58,9 +78,10 @@ impl RunExtremes {
         mut assembled: Assembled<f64>,
         end: f64,
         parts: Option<Revolutions>,
+        wanted: Wanted<'_>,
     ) -> Result<Self, Error> {
         let names = assembled.mechanism().model().names().clone();
-        let quantities = Quantity::all(&names);
+        let quantities = wanted.of(&names);
         let tallies = quantities.iter().map(|quantity| Tally::new(parts, quantity.is_signed()));
         let mut tallies: Vec<Tally> = tallies.collect();
         let end = once_round(&assembled, end);
@@ -102,24 +123,43 @@ impl RunExtremes {
             && let Some(assembled) = Assembled::new(mechanism)
             && (parts.is_some() || once_round(&assembled, end) <= MOST_STRIDES * assembled.stride())
         {
-            return Self::of_assembled(assembled, end, parts);
+            return Self::of_assembled(assembled, end, parts, Wanted::All);
         }
         let revolutions = file.revolutions()?;
-        let accuracy = accuracy(file.number("relative_tolerance").unwrap_or(f64::INFINITY));
-        let friction = revolutions.is_empty() && has_friction(file)?;
+        if !revolutions.is_empty() {
+            let tolerance = file.number("relative_tolerance").unwrap_or(f64::INFINITY);
+            let all = Wanted::All;
+            return Ok(Self::of_revolutions(&names, &revolutions, tolerance, parts, all));
+        }
+        let friction = has_friction(file)?;
         let mut quantities = Vec::new();
         for quantity in Quantity::all(&names) {
             let mut tally = Tally::new(parts, quantity.is_signed());
-            for (k, revolution) in revolutions.iter().enumerate() {
-                tally.take_found(k, revolution, quantity, accuracy);
-            }
-            if revolutions.is_empty() {
-                take_samples(&mut tally, &times, &values_of(file, quantity)?);
-                take_peaks(&mut tally, file, quantity, friction)?;
-            }
+            take_samples(&mut tally, &times, &values_of(file, quantity)?);
+            take_peaks(&mut tally, file, quantity, friction)?;
             quantities.push((quantity, tally));
         }
         Ok(RunExtremes { names, quantities })
+    }
+}
+
+/// Quantities that somebody asks for.
+#[derive(Debug, Clone, Copy)]
+pub enum Wanted<'a> {
+    /// All.
+    All,
+    /// Those of these names: `joint_force.A`.
+    Named(&'a [String]),
+}
+
+impl Wanted<'_> {
+    /// The quantities of a mechanism that are meant.
+    fn of(self, names: &Names) -> Vec<Quantity> {
+        let mut all = Quantity::all(names);
+        if let Wanted::Named(wanted) = self {
+            all.retain(|quantity| wanted.contains(&quantity.name(names)));
+        }
+        all
     }
 }
 
@@ -256,9 +296,9 @@ struct Recording {
 }
 
 impl Recording {
-    fn new(mechanism: &Mechanism<f64>, end: f64, accuracy: f64) -> Self {
+    fn new(mechanism: &Mechanism<f64>, end: f64, accuracy: f64, wanted: Wanted<'_>) -> Self {
         let names = mechanism.model().names().clone();
-        let quantities = Quantity::all(&names);
+        let quantities = wanted.of(&names);
         let tallies = quantities.iter().map(|quantity| Tally::new(None, quantity.is_signed()));
         Recording { tallies: tallies.collect(), names, quantities, end, accuracy }
     }

@@ -13,10 +13,10 @@ mod tally;
 
 pub use contacts::{At, Contacts, RevolutionContacts, Stretch};
 pub use energy::EnergyBalance;
-pub use extremes::{RunExtremes, case_of};
+pub use extremes::{RunExtremes, Wanted, case_of};
 pub use quantity::Quantity;
 pub use revolutions::Revolutions;
-pub use summary::{Reference, Summary, Turning};
+pub use summary::{InMemory, Reference, Summary, Turning};
 pub(crate) use table::table;
 pub use tally::{Basis, Extreme, Extremes, Tally, ratio};
 

@@ -2,14 +2,15 @@
 
 use super::contacts::Contacts;
 use super::energy::EnergyBalance;
-use super::extremes::{RunExtremes, case_of, names_of};
+use super::extremes::{RunExtremes, Wanted, case_of, names_of};
 use super::tally::{Extremes, ratio};
 use super::{Error, Quantity, Revolutions};
 use crate::case::{Case, Changes};
 use crate::certify::Horizon;
+use crate::mechanism::{EnergyObservation, Mechanism};
 use crate::model::Model;
 use crate::record::ResultFile;
-use crate::run::Contact;
+use crate::run::{Assembled, Contact, Revolution};
 use crate::simulate;
 use std::path::PathBuf;
 
@@ -51,7 +52,26 @@ pub enum Reference {
     },
 }
 
-/// A result file in numbers.
+/// A run in memory that came to its end, as far as a summary tells of it.
+#[derive(Debug, Clone, Copy)]
+pub struct InMemory<'a> {
+    /// The case.
+    pub case: &'a Case,
+    /// Its mechanism.
+    pub mechanism: &'a Mechanism<f64>,
+    /// Where the run ended (s).
+    pub end: f64,
+    /// Contacts, in the order of their begins.
+    pub contacts: &'a [Contact],
+    /// Extremes of revolutions, in the order of time.
+    pub revolutions: &'a [Revolution],
+    /// Energies (J) at times (s), those of start and end among them.
+    pub energies: &'a [(f64, EnergyObservation)],
+    /// How far the run is true, if that was looked into.
+    pub horizon: Option<&'a Horizon>,
+}
+
+/// A run in numbers.
 #[derive(Debug)]
 pub struct Summary {
     /// The file.
@@ -95,7 +115,8 @@ impl Summary {
         let contacts = file.contacts()?;
         let end = end_of(&times, &contacts);
         let case = case_of(file, &Changes::default()).ok();
-        let turning = case.as_ref().and_then(|case| turning(case, end, times.len()));
+        let model = case.as_ref().and_then(|case| Model::<f64>::new(&case.description).ok());
+        let turning = model.and_then(|model| turning(&model, end, times.len()));
         let parts = turning.as_ref().map(|turning| turning.revolutions);
         let run = RunExtremes::of_file(file, case.as_ref(), parts)?;
         let reference = match against {
@@ -123,6 +144,51 @@ impl Summary {
             energy: EnergyBalance::of(file)?,
             sentence: horizon.as_ref().map(|horizon| horizon.sentence(file)),
             horizon,
+        })
+    }
+
+    /// Summarises a run in memory that came to its end, held against `reference` if there is one.
+    ///
+    /// # Errors
+    /// Those of [`RunExtremes::of_assembled`].
+    pub fn of_run(
+        run: &InMemory<'_>,
+        reference: Option<RunExtremes>,
+        wanted: Wanted<'_>,
+    ) -> Result<Self, Error> {
+        let InMemory { case, mechanism, end, contacts, .. } = *run;
+        let names = mechanism.model().names();
+        let turning = turning(mechanism.model(), end, usize::MAX);
+        let parts = turning.as_ref().map(|turning| turning.revolutions);
+        let extremes = match Assembled::new(mechanism.clone()) {
+            Some(assembled) => RunExtremes::of_assembled(assembled, end, parts, wanted)?,
+            None => {
+                let tolerance = case.plan.solver.relative_tolerance;
+                RunExtremes::of_revolutions(names, run.revolutions, tolerance, parts, wanted)
+            }
+        };
+        let nothing = || RunExtremes { names: names.clone(), quantities: Vec::new() };
+        let joints = names.clearances.iter().enumerate();
+        Ok(Summary {
+            path: PathBuf::new(),
+            case_name: case.name.clone(),
+            title: case.title.clone(),
+            status: "complete".to_owned(),
+            samples: run.energies.len(),
+            end,
+            reference: Ok(match names.clearances.is_empty() {
+                true => Reference::Itself,
+                false => Reference::Ideal(reference.unwrap_or_else(nothing)),
+            }),
+            run: extremes,
+            contacts: joints
+                .map(|(k, joint)| Contacts::of((k, joint), contacts, end, parts))
+                .collect(),
+            unresolved_contacts: 0,
+            turning,
+            energy: EnergyBalance::of_samples(run.energies.iter().copied()),
+            horizon: run.horizon.cloned(),
+            sentence: None,
         })
     }
 
@@ -174,9 +240,8 @@ fn samples_in(contact: &Contact, times: &[f64]) -> usize {
     times[begin..].iter().take_while(|time| inside(time)).take(3).count()
 }
 
-/// The first drive of a case, and its revolutions; more than there are samples mean nothing.
-fn turning(case: &Case, end: f64, samples: usize) -> Option<Turning> {
-    let model = Model::<f64>::new(&case.description).ok()?;
+/// The first drive of a mechanism, and its revolutions; more than there are samples mean nothing.
+fn turning(model: &Model<f64>, end: f64, samples: usize) -> Option<Turning> {
     let (drive, name) = model.drives().first().zip(model.names().drives.first())?;
     let [start, rate, _] = drive.course.at(0.0);
     let round = std::f64::consts::TAU / drive.course.period()?;
@@ -189,7 +254,7 @@ fn turning(case: &Case, end: f64, samples: usize) -> Option<Turning> {
 fn ideal(file: &ResultFile, end: f64) -> Result<RunExtremes, Error> {
     let case = case_of(file, &Changes::default())?;
     let ideal = simulate::ideal_case(&case).map_err(|why| Error::NoIdeal { why: Box::new(why) })?;
-    RunExtremes::of_ideal(&ideal, end)
+    RunExtremes::of_ideal(&ideal, end, Wanted::All)
 }
 
 fn held_against(

@@ -30,6 +30,7 @@ pub(crate) use publish::{Draft, abandon_drafts};
 pub use reader::{ResultFile, Table};
 pub use schema::{DATASETS, Dataset, Dimension, SCHEMA_VERSION, Source, Values, column_name};
 pub use seal::{Seal, sha256};
+pub(crate) use segments::program;
 pub use segments::{Resumed, Segmented, first_difference, has_segments, is_whole, tidy};
 pub(crate) use sound::{Member, Ration, members};
 pub use store::hdf5_version;

@@ -79,7 +79,7 @@ impl Mark {
 }
 
 /// This program, as far as another would go on otherwise.
-fn program() -> String {
+pub(crate) fn program() -> String {
     let (version, commit) = (env!("CARGO_PKG_VERSION"), env!("FREEPLAY_COMMIT"));
     let commit = if commit.is_empty() { "unknown" } else { commit };
     let (sundials, hdf5) = (crate::engine::ida::sundials_version(), hdf5_version());

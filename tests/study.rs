@@ -1,0 +1,573 @@
+//! Studies. Known in advance: a run of a study is the run that `freeplay run` makes with the same
+//! changes, to the last bit; a section point is the sample at its time; and nobody can see from the
+//! tables of a study how many threads or processes made it, or how often they were killed.
+
+mod written;
+
+use freeplay::post::Summary;
+use freeplay::study::{Options, Study, sweep};
+use parquet::file::reader::FileReader;
+use parquet::file::serialized_reader::SerializedFileReader;
+use serde_json::Value;
+use std::fs::{self, File};
+use std::num::NonZeroUsize;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+use std::time::Duration;
+use written::{Run, alone, root};
+
+const FAST: [&str; 2] = ["solver.engine=explicit", "solver.relative_tolerance=1e-9"];
+const TABLES: [&str; 4] = ["runs", "revolutions", "sections", "failures"];
+
+/// A folder with a study in it.
+struct Desk(tempfile::TempDir);
+
+impl Desk {
+    /// A study of a case of the project, on the explicit engine; `more` is what it says besides.
+    fn new(case: &str, more: &str) -> Desk {
+        let folder = tempfile::tempdir().unwrap();
+        let case = root().join("cases").join(format!("{case}.toml"));
+        let set = FAST.map(|change| format!("{change:?}")).join(", ");
+        let text = format!("case = {:?}\nset = [{set}]\n{more}", case.to_str().unwrap());
+        fs::write(folder.path().join("study.toml"), text).unwrap();
+        Desk(folder)
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    fn command(&self, line: &str) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_freeplay"));
+        command.args(["sweep", "study.toml", "--quiet"]).args(line.split_whitespace());
+        command.current_dir(self.0.path());
+        command
+    }
+
+    fn sweep(&self, line: &str) -> Output {
+        let _alone = alone();
+        self.command(line).output().unwrap()
+    }
+
+    /// The tables in a folder.
+    fn tables(&self, folder: &str) -> Vec<Vec<u8>> {
+        let read = |name| fs::read(self.path(folder).join(format!("{name}.parquet"))).unwrap();
+        TABLES.iter().map(read).collect()
+    }
+
+    /// A table in a folder: its heads, and its rows.
+    fn csv(&self, folder: &str, name: &str) -> (Vec<String>, Vec<Vec<String>>) {
+        let path = self.path(folder).join(format!("{name}.csv"));
+        let mut reader = csv::Reader::from_path(path).unwrap();
+        let heads = reader.headers().unwrap().iter().map(str::to_owned).collect();
+        let rows = reader.records().map(|row| row.unwrap().iter().map(str::to_owned).collect());
+        (heads, rows.collect())
+    }
+}
+
+fn assert_code(said: &Output, code: i32) {
+    assert_eq!(said.status.code(), Some(code), "{}", String::from_utf8_lossy(&said.stderr));
+}
+
+fn errors(said: &Output) -> String {
+    String::from_utf8_lossy(&said.stderr).into_owned()
+}
+
+fn number(text: &str) -> f64 {
+    text.parse().unwrap()
+}
+
+#[test]
+fn a_run_of_a_study_is_the_run_by_itself_to_the_last_bit() {
+    let paths = [
+        "columns.joint_force.A.largest.value",
+        "columns.joint_force.A.largest.time",
+        "columns.joint_force.A.ratio.largest",
+        "columns.drive_torque.crank.smallest.value",
+        "columns.drive_torque.crank.largest.within_horizon",
+        "clearances.A.contacts",
+        "clearances.A.share_in_contact.value",
+        "clearances.A.longest_flight.value",
+        "clearances.A.dissipated.value",
+        "energy.energy_residual",
+        "energy.drive_work",
+        "energy.largest_residual.value",
+        "samples",
+        "horizon.forces",
+    ];
+    let of_revolutions = ["columns.joint_force.A.largest.value", "clearances.A.contacts"];
+    let more = format!(
+        "[[vary]]\nkey = \"joints.A.clearance.radial\"\nvalues = [1e-4, 5e-4]\n\
+         [span]\nrevolutions = 3.5\ndiscard = 1\n\
+         [keep]\nruns = {paths:?}\nrevolutions = {of_revolutions:?}\nhorizon = true\nfiles = true\n\
+         [section]\nangle = 1.0\ncolumns = [\"clearance_x.A\", \"joint_force_y.B0\", \"energy_kinetic\"]\n"
+    );
+    let desk = Desk::new("four-bar-a", &more);
+    assert_code(&desk.sweep("--csv -o made"), 0);
+    let (heads, rows) = desk.csv("made", "runs");
+    assert_eq!(heads[..3], ["run", "joints.A.clearance.radial", "case_sha256"]);
+    let (_, revolutions) = desk.csv("made", "revolutions");
+    assert_eq!(revolutions.len(), 2 * 3);
+    for (run, radial) in ["0.0001", "0.0005"].into_iter().enumerate() {
+        let radial = format!("joints.A.clearance.radial={radial}");
+        let set = [FAST[0], FAST[1], "run.revolutions=3.5", &radial];
+        // through the program, whose file knows its horizon
+        let file = desk.path("own.h5");
+        let mut own = Command::new(env!("CARGO_BIN_EXE_freeplay"));
+        own.args(["run", "--quiet", "--force", "-o"]).arg(&file);
+        own.arg(root().join("cases/four-bar-a.toml"));
+        own.args(set.iter().flat_map(|change| ["--set", change]));
+        let ran = {
+            let _alone = alone();
+            own.output().unwrap()
+        };
+        assert_code(&ran, 0);
+        let own = freeplay::record::ResultFile::open(&file).unwrap();
+        let summary = Summary::of(&own, None).unwrap().to_json();
+        for path in paths {
+            let column = heads.iter().position(|head| head == path).unwrap();
+            let told = number(&rows[run][column]);
+            let expected = at(&summary, path);
+            assert_eq!(told.to_bits(), expected.to_bits(), "{path}: {told} {expected}");
+        }
+        assert_eq!(Some(rows[run][2].as_str()), own.text("case_sha256"));
+        for row in revolutions.iter().filter(|row| row[0] == run.to_string()) {
+            let k: usize = row[2].parse().unwrap();
+            assert!((1..4).contains(&k));
+            let force = &summary["columns"]["joint_force.A"]["revolutions"][k]["largest"]["value"];
+            let contacts = &summary["clearances"]["A"]["revolutions"][k]["contacts"];
+            assert_eq!(number(&row[5]), force.as_f64().unwrap());
+            assert_eq!(number(&row[6]), contacts.as_f64().unwrap());
+        }
+        // the file that was asked for has the same samples as one's own
+        let kept = desk.path("made/files").join(format!("{}.h5", &rows[run][2][..16]));
+        let kept = freeplay::record::ResultFile::open(&kept).unwrap();
+        assert!(kept.is_complete());
+        assert_eq!(kept.column("energy_kinetic").unwrap(), own.column("energy_kinetic").unwrap());
+    }
+}
+
+/// A number of a summary.
+fn at(summary: &Value, path: &str) -> f64 {
+    let columns = path.strip_prefix("columns.").and_then(|path| {
+        let dot = path.match_indices('.').nth(1)?.0;
+        Some(vec!["columns", &path[..dot], &path[dot + 1..]])
+    });
+    let steps = columns.unwrap_or_else(|| vec![path]);
+    let steps = steps.iter().enumerate().flat_map(|(k, step)| match (steps.len(), k) {
+        (3, 0 | 1) => vec![*step],
+        _ => step.split('.').collect(),
+    });
+    match steps.fold(summary, |here, step| &here[step]) {
+        Value::Bool(flag) => f64::from(u8::from(*flag)),
+        value => value.as_f64().unwrap_or(f64::NAN),
+    }
+}
+
+#[test]
+fn section_points_are_the_samples_at_their_times() {
+    let more = "[[vary]]\nkey = \"joints.A.clearance.radial\"\nvalues = [4e-4]\n\
+                [span]\nrevolutions = 4\ndiscard = 1\n\
+                [section]\nangle = 0.5\ncolumns = [\"clearance_x.A\", \"angle.crank\", \"joint_force_y.B0\"]\n";
+    let desk = Desk::new("four-bar-a", more);
+    assert_code(&desk.sweep("--csv -o made"), 0);
+    let (heads, rows) = desk.csv("made", "sections");
+    assert_eq!(
+        heads[2..],
+        ["revolution", "time", "clearance_x.A", "angle.crank", "joint_force_y.B0"]
+    );
+    let turn = std::f64::consts::TAU;
+    assert_eq!(rows.len(), 3);
+    // another run of the same trajectory, sampled often
+    let set = [FAST[0], FAST[1], "run.revolutions=4", "joints.A.clearance.radial=4e-4"];
+    let own = Run::of("four-bar-a", &[&set[..], &["run.sample_interval=1e-6"]].concat());
+    let file = own.file();
+    let times = file.times().unwrap();
+    let [x, force] = ["clearance_x", "joint_force_y"].map(|name| file.table(name).unwrap());
+    let b0 = file.joints().iter().position(|joint| joint == "B0").unwrap();
+    for (row, k) in rows.iter().zip(1..) {
+        let [revolution, time, here, angle, there] = [2, 3, 4, 5, 6].map(|c| number(&row[c]));
+        assert_eq!(revolution, f64::from(k));
+        assert!((angle - 0.5 - turn * f64::from(k)).abs() < 1e-13 * angle, "{angle}");
+        let after = times.partition_point(|sample| *sample < time);
+        let share = (time - times[after - 1]) / (times[after] - times[after - 1]);
+        let between = |column: &[f64]| {
+            let [a, b] = [column[after - 1], column[after]];
+            (a + share * (b - a), (b - a).abs())
+        };
+        for (value, column) in [(here, x.column(0)), (there, force.column(b0))] {
+            // on the straight line between two samples, but for its bend
+            let (line, step) = between(&column);
+            assert!(
+                (value - line).abs() < 0.02 * step + 1e-12 * value.abs(),
+                "{value} {line} {step}"
+            );
+        }
+    }
+}
+
+#[test]
+fn sections_of_a_drive_that_swings_lie_where_its_course_passes_the_angle() {
+    let more = "[[vary]]\nkey = \"drives.crank.amplitude\"\nvalues = [0.4, 0.9]\n\
+                [keep]\nruns = [\"end\"]\nrevolutions = []\n\
+                [section]\nangle = 0.3\ncolumns = [\"angle.crank\"]\n";
+    let desk = Desk::new("four-bar-ideal", more);
+    let study = fs::read_to_string(desk.path("study.toml")).unwrap();
+    let swing = "drives.crank={ kind = 'harmonic', joint = 'A0', amplitude = 0.5, angular_frequency = 125.0 }";
+    let study = study.replace("set = [", &format!("set = [{swing:?}, \"run.duration=0.1\", "));
+    fs::write(desk.path("study.toml"), study).unwrap();
+    assert_code(&desk.sweep("--csv -o made"), 0);
+    let (_, rows) = desk.csv("made", "sections");
+    for (run, amplitude) in [0.4, 0.9].into_iter().enumerate() {
+        let its: Vec<&Vec<String>> = rows.iter().filter(|row| row[0] == run.to_string()).collect();
+        // a swing up and one down in each of two periods
+        assert_eq!(its.len(), 4, "{its:?}");
+        for row in its {
+            let (time, angle) = (number(&row[3]), number(&row[4]));
+            let course = amplitude * (125.0 * time).cos();
+            assert!((angle - 0.3).abs() < 1e-12 && (course - 0.3).abs() < 1e-12, "{row:?}");
+        }
+    }
+}
+
+const GRID: &str = "[[vary]]\nname = \"speed\"\nkey = \"drives.crank.speed_rpm\"\n\
+                    from = 2000\nto = 5000\ncount = 6\n\
+                    [[vary]]\nkeys = [\"joints.A.clearance.radial\"]\nfrom = 1e-4\nto = 2e-2\ncount = 5\n\
+                    spacing = \"log\"\n\
+                    [span]\nrevolutions = 2\n[section]\n";
+
+#[test]
+fn tables_do_not_tell_how_many_jobs_there_were_nor_how_often_they_were_killed() {
+    let desk = Desk::new("four-bar-a", GRID);
+    // the largest clearance is no clearance: a row of failures for each speed
+    assert_code(&desk.sweep("--jobs 1 -o one"), 4);
+    assert_code(&desk.sweep("--jobs 2 -o two"), 4);
+    let expected = desk.tables("one");
+    assert!(desk.tables("two") == expected);
+    let mut killed = 0;
+    for k in 0..12 {
+        let _alone = alone();
+        let mut child = desk.command("--jobs 2 -o three").stderr(Stdio::null()).spawn().unwrap();
+        std::thread::sleep(Duration::from_millis(15 + fastrand::u64(0..60)));
+        killed += i32::from(child.try_wait().unwrap().is_none());
+        child.kill().unwrap();
+        child.wait().unwrap();
+        if k >= 2 && desk.path("three/runs.parquet").exists() {
+            break;
+        }
+    }
+    assert!(killed > 0);
+    let said = desk.sweep("--jobs 2 -o three --json");
+    assert_code(&said, 4);
+    assert!(desk.tables("three") == expected);
+    // and once more: nothing is left to be done
+    let said = desk.sweep("-o three --json");
+    let told: Value = serde_json::from_slice(&said.stdout).unwrap();
+    assert_eq!((&told["made"], &told["runs"], &told["failed"]), (&0.into(), &30.into(), &6.into()));
+    assert!(desk.tables("three") == expected);
+}
+
+#[test]
+fn shards_come_together_to_the_same_tables() {
+    let desk = Desk::new("four-bar-a", GRID);
+    assert_code(&desk.sweep("--jobs 1 -o one"), 4);
+    let mut made = 0;
+    for shard in ["1/3", "2/3"] {
+        let said = desk.sweep(&format!("--shard {shard} -o parts --json"));
+        let told: Value = serde_json::from_slice(&said.stdout).unwrap();
+        made += told["made"].as_u64().unwrap();
+        assert_code(&said, if told["failed"].as_u64() > Some(0) { 4 } else { 0 });
+    }
+    let said = desk.sweep("--gather parts");
+    assert_code(&said, 1);
+    assert!(errors(&said).contains("of 30 runs are missing"), "{}", errors(&said));
+    assert!(!desk.path("parts/runs.parquet").exists());
+    // the last one twice at once, where neither knows of the other
+    let _alone = alone();
+    let both: Vec<_> = (0..2)
+        .map(|_| {
+            desk.command("--shard 3/3 -o parts --json")
+                .stdout(Stdio::piped())
+                .stderr(Stdio::null())
+                .spawn()
+                .unwrap()
+        })
+        .collect();
+    let mut most = 0;
+    for child in both {
+        let said = child.wait_with_output().unwrap();
+        let told: Value = serde_json::from_slice(&said.stdout).unwrap();
+        most = most.max(told["made"].as_u64().unwrap());
+    }
+    drop(_alone);
+    assert!(made + most == 30, "{made} {most}");
+    assert_code(&desk.sweep("--gather parts"), 4);
+    assert!(desk.tables("parts") == desk.tables("one"));
+    // what was gathered goes on as a whole, too
+    assert_code(&desk.sweep("-o parts"), 4);
+}
+
+#[test]
+fn what_can_be_tried_again_says_so() {
+    let desk = Desk::new("four-bar-a", GRID);
+    let _alone = alone();
+    for (line, code) in [("-o full", 3), ("--shard 1/1 -o full", 75)] {
+        let program = env!("CARGO_BIN_EXE_freeplay");
+        // two blocks of 512 bytes are soon full
+        let shell = format!("ulimit -f 2; exec {program} sweep study.toml --quiet --jobs 2 {line}");
+        let said =
+            Command::new("sh").args(["-c", &shell]).current_dir(desk.0.path()).output().unwrap();
+        assert_code(&said, code);
+        assert!(errors(&said).contains("the same command goes on"), "{}", errors(&said));
+    }
+    for (folder, more, code) in [("stopped", "", 143), ("shard", "--shard 1/1", 75)] {
+        let line = format!("-o {folder} {more}");
+        let mut child = desk.command(&line).stderr(Stdio::null()).spawn().unwrap();
+        // by then it listens
+        while !desk.path(folder).join("packs").exists() {
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        let pid = nix::unistd::Pid::from_raw(child.id() as i32);
+        nix::sys::signal::kill(pid, nix::sys::signal::Signal::SIGTERM).unwrap();
+        assert_eq!(child.wait().unwrap().code(), Some(code));
+    }
+    drop(_alone);
+    assert_code(&desk.sweep("-o whole --jobs 1"), 4);
+    for folder in ["full", "stopped", "shard"] {
+        assert_code(&desk.sweep(&format!("-o {folder}")), 4);
+        assert!(desk.tables(folder) == desk.tables("whole"), "{folder}");
+    }
+}
+
+#[test]
+fn a_run_that_fails_is_a_row_with_why() {
+    let desk = Desk::new("four-bar-a", GRID);
+    assert_code(&desk.sweep("--csv -o made"), 4);
+    let (heads, rows) = desk.csv("made", "failures");
+    assert_eq!(heads, ["run", "speed", "joints.A.clearance.radial", "case_sha256", "reason"]);
+    assert_eq!(rows.len(), 6);
+    for (row, speed) in
+        rows.iter().zip(["2000.0", "2600.0", "3200.0", "3800.0", "4400.0", "5000.0"])
+    {
+        assert_eq!((row[1].as_str(), row[2].as_str()), (speed, "0.02"));
+        assert!(row[4].contains("must be less than bearing_radius"), "{}", row[4]);
+    }
+    let (_, runs) = desk.csv("made", "runs");
+    assert_eq!(runs.len(), 24);
+    assert!(runs.iter().all(|row| row[2] != "0.02"));
+}
+
+#[test]
+fn tables_tell_their_units_and_their_study() {
+    let desk = Desk::new(
+        "four-bar-a",
+        "[[vary]]\nkey = \"drives.crank.speed_rpm\"\nvalues = [4000]\n[span]\nrevolutions = 1\n[section]\n",
+    );
+    assert_code(&desk.sweep("-o made"), 0);
+    let text = fs::read_to_string(desk.path("study.toml")).unwrap();
+    for name in TABLES {
+        let file = File::open(desk.path("made").join(format!("{name}.parquet"))).unwrap();
+        let reader = SerializedFileReader::new(file).unwrap();
+        let metadata = reader.metadata().file_metadata().key_value_metadata().unwrap().clone();
+        let of = |key: &str| {
+            let found = metadata.iter().find(|entry| entry.key == key).unwrap();
+            found.value.clone().unwrap()
+        };
+        assert_eq!((of("study_toml"), of("table")), (text.clone(), name.to_owned()));
+        let units: Value = serde_json::from_str(&of("units")).unwrap();
+        assert_eq!(units["drives.crank.speed_rpm"], "rpm");
+        match name {
+            "runs" => {
+                assert_eq!(units["columns.joint_force.A.largest.value"], "N");
+                assert_eq!(units["clearances.A.contacts"], "1");
+                assert_eq!(units["clearances.A.dissipated.value"], "J");
+            }
+            "sections" => assert_eq!(units["angular_velocity.coupler"], "rad/s"),
+            "revolutions" => assert_eq!(units["begin"], "s"),
+            _ => {}
+        }
+    }
+    // another study does not go over these tables unasked
+    fs::write(desk.path("study.toml"), format!("{text}\n# changed\n")).unwrap();
+    let said = desk.sweep("-o made");
+    assert_code(&said, 3);
+    assert!(errors(&said).contains("another study"), "{}", errors(&said));
+    let said = desk.sweep("-o made --force --json");
+    assert_code(&said, 0);
+    // ... and what both have is not made again
+    let told: Value = serde_json::from_slice(&said.stdout).unwrap();
+    assert_eq!(told["made"], 0);
+}
+
+#[test]
+fn samples_are_those_of_their_distributions_and_keys_go_together() {
+    let more = "[[vary]]\nname = \"c\"\nkeys = [\"joints.A.clearance.radial\", \"joints.B.clearance.radial\"]\n\
+                log_uniform = [1e-5, 1e-3]\n\
+                [[vary]]\nkey = \"bodies.coupler.mass\"\nnormal = [0.07, 0.01]\n\
+                [[vary]]\nkey = \"drives.crank.speed_rpm\"\nvalues = [100, 200]\n\
+                [samples]\nmethod = \"latin-hypercube\"\ncount = 500\nseed = 4\n";
+    let desk = Desk::new("four-bar-b", more);
+    let study = Study::read(&desk.path("study.toml")).unwrap();
+    assert_eq!(study.runs, 1000);
+    let number = |run: u64, k: usize| study.point(run)[k].number.unwrap();
+    let mean = |k, of: fn(f64) -> f64| (0..500).map(|run| of(number(run, k))).sum::<f64>() / 500.0;
+    assert!((mean(0, f64::log10) + 4.0).abs() < 1e-3, "{}", mean(0, f64::log10));
+    assert!((mean(1, |m| m) - 0.07).abs() < 1e-4);
+    assert!((mean(1, |m| (m - 0.07).powi(2)).sqrt() - 0.01).abs() < 1e-4);
+    assert_eq!((number(499, 2), number(500, 2)), (100.0, 200.0));
+    assert_eq!(number(3, 0), number(503, 0));
+    let options = study.options(3);
+    let c = study.point(3)[0].text.clone();
+    for joint in ["A", "B"] {
+        assert!(options.contains(&format!("joints.{joint}.clearance.radial={c}")), "{options:?}");
+    }
+}
+
+#[test]
+fn a_study_that_is_wrong_is_told_with_its_line() {
+    let vary = "[[vary]]\nkey = \"joints.A.clearance.radial\"\n";
+    for (more, line, part) in [
+        ("[[vary]]\nkey = \"a\"\nfrom = 1\n", "", "a range needs `from`, `to` and `count`"),
+        ("[[vary]]\nvalues = [1]\n", "line 3", "needs `key`"),
+        (&format!("{vary}values = [1e-4]\nuniform = [1, 2]\n"), "line 3", "needs one of"),
+        (&format!("{vary}uniform = [2, 1]\n"), "line 3", "the first less"),
+        (&format!("{vary}uniform = [1, 2]\n"), "line 3", "needs [samples]"),
+        (&format!("{vary}from = -1\nto = 1\ncount = 3\nspacing = \"log\"\n"), "line 3", "positive"),
+        (
+            &format!("{vary}values = [1e-4]\n[samples]\nmethod = \"sobol\"\ncount = 3\n"),
+            "",
+            "nothing is sampled",
+        ),
+        (&format!("{vary}values = [1e-4]\n{vary}values = [1e-4]\n"), "line 6", "varies already"),
+        (&format!("{vary}values = [1e-4]\nform = 2\n"), "line 6", "unknown field `form`"),
+        (
+            &format!("{vary}values = [1e-4]\n[span]\nrevolutions = 0\n"),
+            "line 7",
+            "must be positive",
+        ),
+        (
+            &format!("{vary}values = [1e-4]\n[keep]\nruns = [\"clearances.B.contacts\"]\n"),
+            "keep.runs",
+            "it has A",
+        ),
+        (
+            &format!("{vary}values = [1e-4]\n[section]\ndrive = \"crnk\"\n"),
+            "section.drive",
+            "did you mean \"crank\"",
+        ),
+        (
+            &format!("{vary}values = [1e-4]\n[section]\ncolumns = [\"angle.crnk\"]\n"),
+            "section.columns",
+            "angle.crank",
+        ),
+        (
+            "[[vary]]\nkey = \"joints.A.clearance.radail\"\nvalues = [1e-4]\n",
+            "radail",
+            "did you mean \"radial\"",
+        ),
+    ] {
+        let desk = Desk::new("four-bar-a", more);
+        let said = desk.sweep("-o made");
+        assert_code(&said, 2);
+        let said = errors(&said);
+        assert!(said.contains(line) && said.contains(part), "{more}: {said}");
+        assert!(!desk.path("made").exists(), "{more}");
+    }
+}
+
+#[test]
+fn the_command_line_makes_the_study_that_a_file_would() {
+    let desk = Desk::new(
+        "four-bar-a",
+        "[[vary]]\nkeys = [\"joints.A.clearance.radial\"]\nfrom = 1e-4\nto = 4e-4\ncount = 3\nspacing = \"log\"\n[span]\nrevolutions = 2.0\ndiscard = 1\n[section]\n",
+    );
+    assert_code(&desk.sweep("-o file --csv"), 0);
+    let _alone = alone();
+    let mut command = Command::new(env!("CARGO_BIN_EXE_freeplay"));
+    command.arg("sweep").arg(root().join("cases/four-bar-a.toml")).current_dir(desk.0.path());
+    command.args(FAST.iter().flat_map(|change| ["--set", change]));
+    command.args(["--vary", "joints.A.clearance.radial=1e-4:4e-4:3:log", "--revolutions", "2"]);
+    command.args(["--discard", "1", "--section", "0", "--csv", "-q", "-o", "line"]);
+    assert_code(&command.output().unwrap(), 0);
+    for name in TABLES {
+        assert_eq!(desk.csv("file", name), desk.csv("line", name), "{name}");
+    }
+    let (_, rows) = desk.csv("line", "runs");
+    let values: Vec<&str> = rows.iter().map(|row| row[1].as_str()).collect();
+    assert_eq!(values, ["0.0001", "0.0002", "0.0004"]);
+}
+
+/// As a library, in this process.
+#[test]
+fn a_study_can_be_made_without_the_program() {
+    let desk = Desk::new(
+        "pendulum",
+        "[[vary]]\nkey = \"run.sample_interval\"\nvalues = [0.01, 0.02]\n[keep]\nruns = [\"energy.energy_residual\", \"end\"]\n",
+    );
+    let study = Study::read(&desk.path("study.toml")).unwrap();
+    let options = Options { jobs: NonZeroUsize::MIN, shard: None, csv: true, force: false };
+    let _alone = alone();
+    let done = sweep(&study, &desk.path("made"), &options, &|_| ()).unwrap();
+    assert_eq!((done.made, done.failed, done.tables.len()), (2, 0, 8));
+    let (_, rows) = desk.csv("made", "runs");
+    assert_eq!(rows[0][3..], rows[1][3..], "the trajectory does not depend on the samples");
+    assert!(Path::new(&done.tables[0]).exists());
+}
+
+#[test]
+fn a_study_is_drawn() {
+    let one = "[[vary]]\nkey = \"joints.A.clearance.radial\"\nfrom = 1e-4\nto = 1e-3\ncount = 4\nspacing = \"log\"\n\
+               [span]\nrevolutions = 33\ndiscard = 2\n[section]\n\
+               [keep]\nrevolutions = [\"columns.joint_force.A.largest\", \"clearances.A.contacts\"]\n\
+               runs = [\"clearances.A.dissipated\"]\n";
+    let desk = Desk::new("four-bar-a", one);
+    assert_code(&desk.sweep("-o one"), 0);
+    fs::write(
+        desk.path("study.toml"),
+        fs::read_to_string(desk.path("study.toml")).unwrap().replace(one, GRID),
+    )
+    .unwrap();
+    assert_code(&desk.sweep("-o grid"), 4);
+    let _alone = alone();
+    let plot = |line: &str| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_freeplay"));
+        command
+            .arg("plot")
+            .args(line.split_whitespace())
+            .current_dir(desk.0.path())
+            .output()
+            .unwrap()
+    };
+    assert_code(&plot("one -o figures"), 0);
+    assert_code(&plot("grid -o figures --only heat-map --format svg,png,pdf"), 0);
+    for (name, words) in [
+        ("response-columns.joint_force.A.largest", "9 of 10 revolutions"),
+        ("response-clearances.A.contacts", "Contacts in A"),
+        ("response-clearances.A.dissipated", "Dissipated in A (J)"),
+        ("bifurcation-clearance_x.A", "Radial clearance of A (mm)"),
+        ("bifurcation-columns.joint_force.A.largest", "Largest force in A (kN)"),
+        ("histogram-columns.joint_force.A.largest", "Share of revolutions"),
+        ("poincare-A", "0.1 mm"),
+        ("heat-map-columns.joint_force.A.largest", "Speed (rpm)"),
+    ] {
+        let svg = fs::read_to_string(desk.path("figures").join(format!("{name}.svg"))).unwrap();
+        let svg = svg.replace("</tspan>", "");
+        let plain: String =
+            svg.split('<').map(|part| part.split_once('>').map_or("", |p| p.1)).collect();
+        assert!(plain.contains(words), "{name}: {plain}");
+        assert!(!svg.contains("NaN"), "{name}");
+    }
+    assert!(desk.path("figures/heat-map-clearances.A.contacts.pdf").exists());
+    assert!(!desk.path("figures/response-run.svg").exists());
+    let said = plot("one grid -o more");
+    assert_code(&said, 2);
+    assert!(errors(&said).contains("a study is drawn by itself"), "{}", errors(&said));
+    fs::create_dir(desk.path("empty")).unwrap();
+    let said = plot("empty -o more");
+    assert_code(&said, 2);
+    assert!(errors(&said).contains("empty/runs.parquet"), "{}", errors(&said));
+    // what is no table of a study is said to be none
+    fs::write(desk.path("one/runs.parquet"), "PAR1 nothing").unwrap();
+    assert_code(&plot("one -o more"), 2);
+    assert!(!desk.path("more").exists());
+}
