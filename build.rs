@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, exit};
 
 const HEADERS_MISSING: &str = "the headers of SUNDIALS were not found: freeplay needs SUNDIALS 6.4 \
-    with IDA (Debian and Ubuntu: `apt install libsundials-dev libclang-dev`); if they are \
+    with IDA and KLU (Debian and Ubuntu: `apt install libsundials-dev libclang-dev`); if they are \
     installed elsewhere, set SUNDIALS_INCLUDE_DIR and SUNDIALS_LIBRARY_DIR";
 
 fn main() {
