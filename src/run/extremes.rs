@@ -515,53 +515,18 @@ impl Tracker {
         look: &mut L,
     ) -> Result<(), L::Error> {
         let width = panel.times[1] - panel.times[0];
-        let seen = |stations: &[Station], about: f64| {
-            let places = panel.with(stations, (place, sign));
-            places.filter(|places| places.left.0 < about && about < places.right.0)
-        };
         let (mut aim, mut expected) = (guess, panel.at(guess));
         if let Some(doubt) = sketch {
-            let mut bracket =
-                seen(&self.sketches, guess).unwrap_or_else(|| panel.bracket(expected));
-            let slack = LEFT_OUT * self.spans[place];
-            let mut next = match bracket.best {
-                Some(_) => bracket.next(width, bracket.top() + slack),
-                None => Some(guess),
-            };
-            for _ in 0..MOST_LOOKS {
-                let Some(aim) = next else { break };
-                let same = |sketch: &Station| (sketch.time - aim).abs() <= SAME * width;
-                let known = self.sketches.iter().position(same);
-                let known = match known {
-                    Some(known) => known,
-                    None => {
-                        let mut station = self.station(aim, false);
-                        look.sketch(aim, &mut station.values)?;
-                        self.sketches.push(station);
-                        self.sketches.len() - 1
-                    }
-                };
-                let Station { time, values, .. } = &self.sketches[known];
-                bracket.take((*time, sign * values[place]));
-                next = bracket.next(width, bracket.top() + slack);
-            }
-            let Some(summit) = bracket.best else { return Ok(()) };
-            if summit.1 + doubt < self.bar(place, sign) {
+            let sketched = self.sketch(&panel, guess, (place, sign), look)?;
+            let Some(summit) = sketched.best else { return Ok(()) };
+            let bar = self.bar(place, sign);
+            if summit.1 + doubt < bar || self.is_known_below(bar, &panel, &sketched, (place, sign))
+            {
                 return Ok(());
             }
             (aim, expected) = summit;
-            // a look that others have had beside it tells as much as one of its own
-            let beside = |glance: &&Station| (glance.time - aim).abs() <= NEAR * width;
-            if let Some(glance) = self.glances.iter().find(beside) {
-                let drawn = parabola(bracket.left, summit, bracket.right, glance.time);
-                let mut places = panel.bracket(drawn);
-                places.take((glance.time, sign * glance.values[place]));
-                if !places.may_pass(self.bar(place, sign) - (summit.1 - drawn).abs()) {
-                    return Ok(());
-                }
-            }
         }
-        if let Some(mut bracket) = seen(&self.glances, aim) {
+        if let Some(mut bracket) = panel.with(&self.glances, (place, sign), aim) {
             if bracket.next(width, self.bar(place, sign)).is_none() {
                 return Ok(());
             }
@@ -580,6 +545,62 @@ impl Tracker {
             bracket.take(self.look(next, (place, sign), look)?);
         }
         Ok(())
+    }
+
+    /// Places about the summit that sketches show in a panel, beginning at a guess (s).
+    fn sketch<L: Look>(
+        &mut self,
+        panel: &Panel,
+        guess: f64,
+        (place, sign): (usize, f64),
+        look: &mut L,
+    ) -> Result<Bracket, L::Error> {
+        let width = panel.times[1] - panel.times[0];
+        let slack = LEFT_OUT * self.spans[place];
+        let known = panel.with(&self.sketches, (place, sign), guess);
+        let mut bracket = known.unwrap_or_else(|| panel.bracket(panel.at(guess)));
+        let mut next = match bracket.best {
+            Some(_) => bracket.next(width, bracket.top() + slack),
+            None => Some(guess),
+        };
+        for _ in 0..MOST_LOOKS {
+            let Some(aim) = next else { break };
+            let same = |sketch: &Station| (sketch.time - aim).abs() <= SAME * width;
+            let known = self.sketches.iter().position(same);
+            let known = match known {
+                Some(known) => known,
+                None => {
+                    let mut station = self.station(aim, false);
+                    look.sketch(aim, &mut station.values)?;
+                    self.sketches.push(station);
+                    self.sketches.len() - 1
+                }
+            };
+            let Station { time, values, .. } = &self.sketches[known];
+            bracket.take((*time, sign * values[place]));
+            next = bracket.next(width, bracket.top() + slack);
+        }
+        Ok(bracket)
+    }
+
+    /// Whether a look that others have had beside a sketched summit tells that it is below a bar, as a
+    /// look of its own would.
+    fn is_known_below(
+        &self,
+        bar: f64,
+        panel: &Panel,
+        sketched: &Bracket,
+        (place, sign): (usize, f64),
+    ) -> bool {
+        let Some(summit) = sketched.best else { return false };
+        let reach = NEAR * (panel.times[1] - panel.times[0]);
+        let beside = |glance: &&Station| (glance.time - summit.0).abs() <= reach;
+        self.glances.iter().find(beside).is_some_and(|glance| {
+            let drawn = parabola(sketched.left, summit, sketched.right, glance.time);
+            let mut places = panel.bracket(drawn);
+            places.take((glance.time, sign * glance.values[place]));
+            !places.may_pass(bar - (summit.1 - drawn).abs())
+        })
     }
 
     /// Looks at a time (s), takes what is there; where (s) it was and what a measure is there,
@@ -784,9 +805,14 @@ impl Panel {
         }
     }
 
-    /// The places about the highest of the stations inside, where it has lower ones on both sides:
-    /// what others have seen is not looked at again.
-    fn with(&self, stations: &[Station], (place, sign): (usize, f64)) -> Option<Bracket> {
+    /// The places about the highest of the stations inside, where it has lower ones on both sides of it
+    /// and of a time (s): what others have seen is not looked at again.
+    fn with(
+        &self,
+        stations: &[Station],
+        (place, sign): (usize, f64),
+        about: f64,
+    ) -> Option<Bracket> {
         let [left, right] = [self.times[0], self.times[1]];
         let inside = stations.iter().filter(|station| station.time > left && station.time < right);
         let mut seen: Vec<(f64, f64)> =
@@ -804,6 +830,9 @@ impl Panel {
         let best = (0..seen.len()).max_by(|a, b| seen[*a].1.total_cmp(&seen[*b].1))?;
         let (before, after) = (seen.get(best.checked_sub(1)?)?, seen.get(best + 1)?);
         let (before, best_place, after) = (*before, seen[best], *after);
+        if !(before.0 < about && about < after.0) {
+            return None;
+        }
         let beyond = best.checked_sub(2).and_then(|far| seen.get(far)).or(seen.get(best + 2));
         let expected = match beyond {
             Some(beyond) => parabola(before, after, *beyond, best_place.0),

@@ -142,7 +142,7 @@ mod tests {
                 assert_eq!(of_dense, of_sparse);
             }
         }
-        assert_eq!(sparse.rows.len(), 8);
-        assert_eq!(sparse.begins, [0, 2, 4, 5, 8]);
+        assert_eq!(sparse.rows.len(), 9);
+        assert_eq!(sparse.begins, [0, 2, 5, 6, 9]);
     }
 }
