@@ -14,7 +14,7 @@ need_browser_driver
 failed=()
 cargo fmt --check || failed+=("cargo fmt")
 cargo clippy --locked --release --all-targets -- -D warnings || failed+=("cargo clippy")
-RUSTDOCFLAGS="-D warnings" cargo doc --locked --no-deps || failed+=("cargo doc")
+RUSTDOCFLAGS="-D warnings" cargo doc --locked --release --no-deps || failed+=("cargo doc")
 cargo test --locked --release --no-fail-fast || failed+=("cargo test")
 if [ ${#failed[@]} -gt 0 ]; then
     (IFS=,; echo "failed: ${failed[*]}" >&2)
