@@ -275,7 +275,7 @@ fn a_file_that_may_not_grow_is_an_error_of_writing() {
 fn memory_that_runs_out_is_a_clear_end() {
     let desk = with_a_run();
     desk.file("theirs.csv", format!("time,x\n{}", "1e-4,1.0000000000000\n".repeat(5_000_000)));
-    let said = desk.shell("ulimit -v 150000; exec $FREEPLAY compare theirs.csv run.h5");
+    let said = desk.shell("ulimit -v 180000; exec $FREEPLAY compare theirs.csv run.h5");
     said.assert_code(4);
     assert!(said.errors.contains("memory allocation of"), "{said:#?}");
 }
