@@ -9,9 +9,9 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use toml_edit::{Document, DocumentMut, TableLike, TomlError};
 
-/// Largest case file that is read (bytes). Case files are a few thousand bytes long; this keeps a
+/// Largest case file that is read (bytes). Most are a few thousand bytes long; this keeps a
 /// wrong path, to a result file say, from filling the memory.
-const LARGEST: u64 = 1 << 20;
+const LARGEST: u64 = 16_000_000;
 
 /// Reads the text of a case file.
 pub(super) fn read_text(path: &Path) -> Result<String, Error> {

@@ -173,6 +173,6 @@ fn files_that_are_no_case_files_are_refused() {
     assert!(matches!(read(&folder.path().join("none.toml")), Error::Unreadable { .. }));
     assert!(matches!(read(folder.path()), Error::Unreadable { .. }));
     assert!(matches!(read(&write("b", b"a = 1\n\xff\xfe")), Error::NotText { line: 2, .. }));
-    assert!(matches!(read(&write("huge", &vec![b'#'; 2 << 20])), Error::TooLarge { .. }));
+    assert!(matches!(read(&write("huge", &vec![b'#'; 17 << 20])), Error::TooLarge { .. }));
     assert!(matches!(read(&write("zeros", &[0; 64])), Error::Syntax { line: 1, .. }));
 }
