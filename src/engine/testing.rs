@@ -225,8 +225,8 @@ impl<F: Formulas> Dae for Sample<F> {
                 self.residual(t, &y, &yp, side)?;
             }
             (y[j], yp[j]) = (kept, kept_rate);
-            for i in 0..y.len() {
-                jacobian.add(i, j, (sides[0][i] - sides[1][i]) / (2.0 * step));
+            for (i, (right, left)) in sides[0].iter().zip(&sides[1]).enumerate() {
+                jacobian.add(i, j, (right - left) / (2.0 * step));
             }
         }
         Ok(())

@@ -640,10 +640,9 @@ impl<S: Scalar> Conditions<S> {
     /// The change of the module's header; where centring is weighed against staying, the last two
     /// ranks are one. `None` if it cannot be computed.
     fn change(&self, weighed: bool) -> Option<Change<S>> {
-        if self.near.len() > MANY {
-            if let Some(change) = self.by_multipliers(weighed) {
-                return Some(change);
-            }
+        let change = if self.near.len() > MANY { self.by_multipliers(weighed) } else { None };
+        if change.is_some() {
+            return change;
         }
         let first = self.solution(weighed)?;
         if self.bend.is_some() {

@@ -526,10 +526,10 @@ impl Tracker {
             }
             (aim, expected) = summit;
         }
-        if let Some(mut bracket) = panel.with(&self.glances, (place, sign), aim) {
-            if bracket.next(width, self.bar(place, sign)).is_none() {
-                return Ok(());
-            }
+        let bar = self.bar(place, sign);
+        let known = panel.with(&self.glances, (place, sign), aim);
+        if known.is_some_and(|mut known| known.next(width, bar).is_none()) {
+            return Ok(());
         }
         let mut bracket = panel.bracket(expected);
         bracket.take(self.look(aim, (place, sign), look)?);

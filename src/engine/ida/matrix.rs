@@ -129,16 +129,11 @@ mod tests {
             }
             sparse.settle();
             for column in 0..size {
-                let listed = |matrix: &dyn Fn(&mut Vec<(usize, f64)>)| {
-                    let mut all = Vec::new();
-                    matrix(&mut all);
-                    all.retain(|(_, entry)| *entry != 0.0);
-                    all
-                };
-                let of_dense =
-                    listed(&|all| dense.each(column, 1..4, |row, entry| all.push((row, entry))));
-                let of_sparse =
-                    listed(&|all| sparse.each(column, 1..4, |row, entry| all.push((row, entry))));
+                let (mut of_dense, mut of_sparse) = (Vec::new(), Vec::new());
+                dense.each(column, 1..4, |row, entry| of_dense.push((row, entry)));
+                sparse.each(column, 1..4, |row, entry| of_sparse.push((row, entry)));
+                of_dense.retain(|(_, entry)| *entry != 0.0);
+                of_sparse.retain(|(_, entry)| *entry != 0.0);
                 assert_eq!(of_dense, of_sparse);
             }
         }
