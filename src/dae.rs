@@ -50,7 +50,8 @@ pub struct State<'a, S> {
     pub q: &'a [S],
     /// Velocities, n of them (m/s, rad/s).
     pub v: &'a [S],
-    /// Inner states, each in its own unit. Where no forces are asked for they do not matter.
+    /// Inner states, each in its own unit. Where neither forces nor event functions are asked for they
+    /// do not matter.
     pub z: &'a [S],
     /// What an engine carries along; `None` has the system compute it from time and coordinates.
     pub carried: Option<Carried<'a, S>>,

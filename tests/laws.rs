@@ -145,7 +145,7 @@ fn every_law_runs_case_c_on_the_explicit_engine() {
 /// Of the laws that remember nothing the formula is written here; the others are solved in their files.
 #[test]
 fn every_friction_law_has_a_formula_or_a_memory() {
-    let remembers = ["dahl", "lugre", "elasto-plastic"];
+    let remembers = ["dahl", "lugre", "elasto-plastic", "gonthier"];
     for (word, _) in frictions() {
         assert_eq!(ratio(word, 0.1).is_none(), remembers.contains(&word), "{word}");
     }

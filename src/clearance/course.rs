@@ -15,7 +15,7 @@
 
 use super::{Clearance, EventSlot, Gap, GapRates, Mode};
 use crate::dae::Course;
-use crate::friction::FrictionLaw;
+use crate::friction::{FrictionLaw, Inner};
 use crate::plane::{Motion, Pose, Vector};
 use crate::scalar::Scalar;
 
@@ -34,13 +34,14 @@ pub struct Bodies<'a, S> {
 }
 
 impl<S: Scalar> Clearance<S> {
-    /// The course of an event function. Whether the offset of the gap is `carried` by the engine,
+    /// The course of an event function, with the inner states of the friction. Whether the offset of the gap is `carried` by the engine,
     /// and not a difference of coordinates, decides on its rounding.
     pub fn course(
         &self,
         mode: &Mode<S>,
         slot: EventSlot,
         gap: &Gap<S>,
+        inner: Inner<S>,
         bodies: Bodies<'_, S>,
         carried: bool,
     ) -> Course {
@@ -49,9 +50,9 @@ impl<S: Scalar> Clearance<S> {
         }
         let rates = self.rates(gap, bodies.motions);
         let second = self.second_rates(gap, &rates, bodies.motions, bodies.accelerations);
-        let value = self.event_value(mode, slot, gap, || rates).to_f64();
-        let rate = self.event_rate(mode, slot, gap, rates.rate, second).to_f64();
-        let grain = self.rate_grain(slot, mode, &rates, bodies);
+        let value = self.event_value(mode, slot, gap, inner, || rates).to_f64();
+        let rate = self.event_rate(mode, slot, gap, inner, &rates, second).to_f64();
+        let grain = self.rate_grain(slot, mode, &rates, inner, bodies);
         Course { value, rate, grain, noise: S::EPSILON * (ROUNDINGS + 4.0 * grain), ..Course::NONE }
     }
 
@@ -103,6 +104,7 @@ impl<S: Scalar> Clearance<S> {
         slot: EventSlot,
         mode: &Mode<S>,
         rates: &GapRates<S>,
+        inner: Inner<S>,
         bodies: Bodies<'_, S>,
     ) -> f64 {
         let of = |body: usize, arm: Vector<S>, radius: S| {
@@ -115,6 +117,14 @@ impl<S: Scalar> Clearance<S> {
         let per_speed = match (slot, mode, &self.friction) {
             (EventSlot::Pull, Mode::Contact(contact), _) => {
                 self.normal.pressing_slope(contact.inverse_impact_rate)
+            }
+            (EventSlot::InnerEdge(edge), Mode::Contact(contact), _) => {
+                let within = self.inner_edge(contact, edge, rates.slip, inner);
+                let Some(within) = within else { return 0.0 };
+                let remembered = within.d_inner.iter().zip(inner);
+                let remembered = remembered
+                    .fold(S::zero(), |sum, (slope, state)| sum + (*slope * state).abs());
+                return (speed * within.d_slip.abs() + remembered).to_f64();
             }
             (_, _, Some(friction)) => S::one() / friction.slip_scale(),
             _ => S::zero(),

@@ -9,7 +9,7 @@
 
 use super::{Clearance, Contact, Gap, GapRates, GapSlopes};
 use crate::contact::{NormalForce, Penetration};
-use crate::friction::{FrictionLaw, Sloped};
+use crate::friction::{FrictionLaw, Inner, MOST_INNER, Sloped};
 use crate::plane::{Vector, Wrench};
 use crate::scalar::Scalar;
 
@@ -36,9 +36,9 @@ pub struct ForceSlopes<S> {
 }
 
 impl<S: Scalar> ContactForce<S> {
-    /// ∂F_T/∂z (N over the unit of z), by the inner state of the friction.
-    pub fn tangential_slope(&self) -> S {
-        self.ratio.d_inner * self.normal.value
+    /// ∂F_T/∂z (N over the unit of z), by the inner states of the friction.
+    pub fn tangential_slopes(&self) -> Inner<S> {
+        self.ratio.d_inner.map(|slope| slope * self.normal.value)
     }
 }
 
@@ -49,7 +49,7 @@ impl<S: Scalar> Clearance<S> {
         Penetration { depth: gap.depth, rate, inverse_impact_rate: contact.inverse_impact_rate }
     }
 
-    /// The forces of a contact, whose friction may have an `inner` state; from the root of the
+    /// The forces of a contact, whose friction may have `inner` states; from the root of the
     /// depth, where that is known
     /// ([`NormalLaw::force_from_root`](crate::contact::NormalLaw::force_from_root)).
     #[inline(always)]
@@ -58,7 +58,7 @@ impl<S: Scalar> Clearance<S> {
         contact: &Contact<S>,
         gap: &Gap<S>,
         rates: &GapRates<S>,
-        inner: S,
+        inner: Inner<S>,
         root: Option<S>,
     ) -> ContactForce<S> {
         let penetration = self.penetration(contact, gap, rates.rate);
@@ -116,14 +116,15 @@ impl<S: Scalar> Clearance<S> {
         changed
     }
 
-    /// Changes of the wrenches with the inner state of the friction.
+    /// Changes of the wrenches with one inner state of the friction, by number.
     pub fn inner_slopes(
         &self,
         gap: &Gap<S>,
         rates: &GapRates<S>,
         force: &ContactForce<S>,
+        inner: usize,
     ) -> ForceSlopes<S> {
-        let d_tangential = force.tangential_slope();
+        let d_tangential = force.tangential_slopes()[inner];
         self.changed(gap, rates.tangent * d_tangential, d_tangential)
     }
 
@@ -136,12 +137,17 @@ impl<S: Scalar> Clearance<S> {
         ForceSlopes { bearing, journal }
     }
 
-    /// ż of the friction's inner state in a contact; zero where it has none.
+    /// ż of the friction's inner states in a contact; zero where it has none.
     #[inline(always)]
-    pub fn inner_rate(&self, contact: &Contact<S>, rates: &GapRates<S>, inner: S) -> Sloped<S> {
+    pub fn inner_rates(
+        &self,
+        contact: &Contact<S>,
+        rates: &GapRates<S>,
+        inner: Inner<S>,
+    ) -> [Sloped<S>; MOST_INNER] {
         match (&self.friction, contact.branch) {
-            (Some(friction), Some(branch)) => friction.inner_rate(branch, rates.slip, inner),
-            _ => Sloped::none(),
+            (Some(friction), Some(branch)) => friction.inner_rates(branch, rates.slip, inner),
+            _ => [Sloped::none(); MOST_INNER],
         }
     }
 }

@@ -7,7 +7,7 @@
 use super::{Clearance, Gap, GapRates};
 use crate::contact::Penetration;
 use crate::dae::{Direction, Watch};
-use crate::friction::{Branch, FrictionLaw};
+use crate::friction::{Branch, FrictionLaw, Inner, MOST_INNER, Sloped};
 use crate::scalar::{Scalar, bits};
 use serde::{Deserialize, Serialize};
 
@@ -47,6 +47,8 @@ pub enum EventSlot {
     LowerEdge,
     /// The slip below the upper edge of its branch, in units of the law's own.
     UpperEdge,
+    /// An edge of the branch in which the inner states of the friction have a say, by number.
+    InnerEdge(u8),
     /// Negative where the law pulls: 1 + a δ̇/δ̇⁽⁻⁾, or what other laws have for it.
     Pull,
 }
@@ -55,8 +57,9 @@ impl<S: Scalar> Clearance<S> {
     /// The event functions this joint has, whatever its mode.
     pub fn event_slots(&self) -> Vec<EventSlot> {
         let mut slots = vec![EventSlot::Depth];
-        if self.friction.is_some() {
+        if let Some(friction) = &self.friction {
             slots.extend([EventSlot::LowerEdge, EventSlot::UpperEdge]);
+            slots.extend((0..friction.inner_edges()).map(EventSlot::InnerEdge));
         }
         // pulling changes the force where tension is cut, and ends friction in any case
         let matters = self.cut_tension || self.friction.is_some();
@@ -91,6 +94,12 @@ impl<S: Scalar> Clearance<S> {
                 (Direction::Rising, 1.0)
             }
             (Mode::Contact(_), EventSlot::Pull) => (Direction::Falling, 1.0),
+            (Mode::Contact(contact), EventSlot::InnerEdge(edge)) => {
+                match self.inner_edge(contact, edge, S::zero(), [S::zero(); MOST_INNER]) {
+                    Some(_) => (Direction::Falling, 1.0),
+                    None => (Direction::Off, 1.0),
+                }
+            }
             (Mode::Contact(contact), edge) => match self.edge(contact, edge) {
                 Some(_) => (Direction::Falling, 1.0),
                 None => (Direction::Off, 1.0),
@@ -105,13 +114,25 @@ impl<S: Scalar> Clearance<S> {
         Some(if slot == EventSlot::LowerEdge { lower } else { upper }).filter(|e| e.is_finite())
     }
 
-    /// Value of an event function. `rates` is asked for only in contact, where e > 0.
+    /// How far the present branch of friction is from an edge in which inner states have a say.
+    pub(super) fn inner_edge(
+        &self,
+        contact: &Contact<S>,
+        edge: u8,
+        slip: S,
+        inner: Inner<S>,
+    ) -> Option<Sloped<S>> {
+        self.friction?.inner_edge(contact.branch?, edge, slip, inner)
+    }
+
+    /// Value of an event function, with the inner states of the friction. `rates` is asked for only in contact, where e > 0.
     #[inline(always)]
     pub fn event_value(
         &self,
         mode: &Mode<S>,
         slot: EventSlot,
         gap: &Gap<S>,
+        inner: Inner<S>,
         rates: impl FnOnce() -> GapRates<S>,
     ) -> S {
         match (mode, slot) {
@@ -119,6 +140,10 @@ impl<S: Scalar> Clearance<S> {
             (Mode::Flight, _) => S::one(),
             (Mode::Contact(contact), EventSlot::Pull) => {
                 self.normal.pressing(self.penetration(contact, gap, rates().rate))
+            }
+            (Mode::Contact(contact), EventSlot::InnerEdge(edge)) => {
+                let within = self.inner_edge(contact, edge, rates().slip, inner);
+                within.map_or(S::one(), |within| within.value)
             }
             (Mode::Contact(contact), edge) => match (self.edge(contact, edge), &self.friction) {
                 (Some(at), Some(friction)) => {
@@ -130,20 +155,27 @@ impl<S: Scalar> Clearance<S> {
         }
     }
 
-    /// Time derivative (1/s) of an event function, from δ̇, δ̈ and v̇_T (m/s, m/s²).
+    /// Time derivative (1/s) of an event function, from δ̈ and v̇_T (m/s²), with the inner states of
+    /// the friction.
     pub fn event_rate(
         &self,
         mode: &Mode<S>,
         slot: EventSlot,
         gap: &Gap<S>,
-        rate: S,
+        inner: Inner<S>,
+        rates: &GapRates<S>,
         second: (S, S),
     ) -> S {
         match (mode, slot) {
-            (_, EventSlot::Depth) => rate / self.radial,
+            (_, EventSlot::Depth) => rates.rate / self.radial,
             (Mode::Flight, _) => S::zero(),
             (Mode::Contact(contact), EventSlot::Pull) => {
-                self.normal.pressing_rate(self.penetration(contact, gap, rate), second.0)
+                self.normal.pressing_rate(self.penetration(contact, gap, rates.rate), second.0)
+            }
+            (Mode::Contact(contact), EventSlot::InnerEdge(edge)) => {
+                let bends = self.inner_rates(contact, rates, inner).map(|bend| bend.value);
+                let within = self.inner_edge(contact, edge, rates.slip, inner);
+                within.map_or(S::zero(), |within| within.rate(second.1, bends))
             }
             (Mode::Contact(contact), edge) => match (self.edge(contact, edge), &self.friction) {
                 (Some(_), Some(friction)) => {
@@ -172,6 +204,11 @@ impl<S: Scalar> Clearance<S> {
             (Mode::Contact(_), EventSlot::Depth) | (Mode::Flight, _) => Mode::Flight,
             (Mode::Contact(contact), EventSlot::Pull) => {
                 Mode::Contact(Contact { pulling: !contact.pulling, ..*contact })
+            }
+            (Mode::Contact(contact), EventSlot::InnerEdge(edge)) => {
+                let branch = contact.branch.zip(self.friction);
+                let branch = branch.map(|(branch, law)| law.across(branch, edge));
+                Mode::Contact(Contact { branch, ..*contact })
             }
             (Mode::Contact(contact), edge) => {
                 let (slip, upward) = (rates().0.slip, edge == EventSlot::UpperEdge);

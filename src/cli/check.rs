@@ -7,7 +7,6 @@ use crate::clearance::Clearance;
 use crate::contact::elastic::ElasticLaw;
 use crate::contact::{self, depth_under};
 use crate::dae::System;
-use crate::friction::FrictionLaw;
 use crate::joint::REVOLUTE;
 use crate::mechanism::{Mechanism, Observation};
 use crate::model::Description;
@@ -238,7 +237,7 @@ impl Checked<'_> {
             "nominal_restitution": nominal_restitution(&self.case.description, self.simulation.mechanism(), k),
             "friction": clearance.friction.is_some(),
             "friction_law": described.map(|values| values.kind().word),
-            "holds_at_rest": clearance.friction.map(|law| law.inner_scale().is_some()),
+            "holds_at_rest": clearance.friction.map(|law| law.remembers()),
             "creep_under_half": described.zip(clearance.friction).and_then(|(values, law)| {
                 law.creep(0.5 * friction_of_rest(values))
             }),
@@ -507,7 +506,7 @@ fn friction_at_rest(described: Option<&Values>, clearance: &Clearance<f64>) -> S
         return "no friction".to_owned();
     };
     let word = values.kind().word;
-    if law.inner_scale().is_some() {
+    if law.remembers() {
         return format!("friction {word}, which holds a load at rest");
     }
     let half = 0.5 * friction_of_rest(values);

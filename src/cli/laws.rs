@@ -94,11 +94,13 @@ pub(super) fn laws(arguments: &Arguments) -> Result<(), Failure> {
         });
         return super::print_json(format_args!("{all:#}\n"));
     }
-    match (&laws[..], &kinds[..]) {
-        ([law], []) => super::print(in_full(*law, &arguments.restitution)),
-        ([], [kind]) => super::print(kind_in_full(kind)),
-        _ => super::print(menu(&laws, &elastics, &own, &frictions, &arguments.restitution)),
+    if arguments.name.is_none() {
+        return super::print(menu(&laws, &elastics, &own, &frictions, &arguments.restitution));
     }
+    // a normal and a friction law may share their author's name
+    let normal = laws.iter().map(|law| in_full(*law, &arguments.restitution));
+    let all: Vec<String> = normal.chain(kinds.iter().map(|kind| kind_in_full(kind))).collect();
+    super::print(all.join("\n"))
 }
 
 /// What the bench's impact does with a law.

@@ -17,7 +17,7 @@
 //! evaluated by region, each of which goes on smoothly beyond its edges.
 
 use super::pieces::Pieces;
-use super::{Branch, COEFFICIENT, Ends, FrictionLaw, Sloped};
+use super::{Branch, COEFFICIENT, Ends, FrictionLaw, Inner, Sloped};
 use crate::parameter::{Key, Kind, Otherwise, Range, Takes, Values};
 use crate::scalar::Scalar;
 
@@ -164,9 +164,9 @@ impl<S: Scalar> Ambrosio<S> {
 
 impl<S: Scalar> FrictionLaw<S> for Ambrosio<S> {
     #[inline(always)]
-    fn ratio(&self, branch: Branch, slip: S, _: S) -> Sloped<S> {
+    fn ratio(&self, branch: Branch, slip: S, _: Inner<S>) -> Sloped<S> {
         let (value, d_slip) = self.of_slip(branch.into(), slip);
-        Sloped { value, d_slip, d_inner: S::zero() }
+        Sloped::by_slip(value, d_slip)
     }
 
     fn branch(&self, slip: S, acceleration: S) -> Branch {

@@ -16,7 +16,7 @@
 //! the formula was not seen in print; its continuity was checked.)
 
 use super::pieces::Pieces;
-use super::{Branch, COEFFICIENT, Ends, FrictionLaw, Sloped};
+use super::{Branch, COEFFICIENT, Ends, FrictionLaw, Inner, Sloped};
 use crate::parameter::{Key, Kind, Otherwise, Range, Takes, Values};
 use crate::scalar::Scalar;
 
@@ -81,7 +81,7 @@ impl<S: Scalar> BengisuAkay<S> {
 
 impl<S: Scalar> FrictionLaw<S> for BengisuAkay<S> {
     #[inline(always)]
-    fn ratio(&self, Branch(piece): Branch, slip: S, _: S) -> Sloped<S> {
+    fn ratio(&self, Branch(piece): Branch, slip: S, _: Inner<S>) -> Sloped<S> {
         let forward = if piece < 2 { -S::one() } else { S::one() };
         // the slip beyond the peak
         let more = slip * forward - self.transition;
@@ -96,7 +96,7 @@ impl<S: Scalar> FrictionLaw<S> for BengisuAkay<S> {
                 (self.rest * (S::one() - x * x), -two * self.rest * x / self.transition)
             }
         };
-        Sloped { value: -forward * share, d_slip: -slope, d_inner: S::zero() }
+        Sloped::by_slip(-forward * share, -slope)
     }
 
     fn branch(&self, slip: S, acceleration: S) -> Branch {
@@ -134,7 +134,7 @@ mod tests {
 
     #[test]
     fn the_peak_is_that_of_rest_and_far_from_it_friction_is_that_of_sliding() {
-        let at = |piece, slip| -law::<f64>().ratio(Branch(piece), slip, 0.0).value;
+        let at = |piece, slip| -law::<f64>().ratio(Branch(piece), slip, [0.0; 2]).value;
         assert_eq!((at(2, 0.01), at(3, 0.01), at(2, 0.0), at(1, 0.0)), (0.15, 0.15, 0.0, 0.0));
         assert!((at(3, 1.0) - 0.1).abs() < 1e-15);
         assert!((at(3, 0.03) - (0.1 + 0.05 * (-1.0f64).exp())).abs() < 1e-15);
@@ -144,8 +144,8 @@ mod tests {
         #[test]
         fn slopes_are_those_of_dual_numbers_and_friction_opposes_slip(slip in -0.05..0.05f64) {
             let branch = law::<f64>().branch(slip, 0.0);
-            let slope = law::<Dual64>().ratio(branch, Dual64::new(slip, 1.0), Dual64::from_f64(0.0));
-            let found = law::<f64>().ratio(branch, slip, 0.0);
+            let slope = law::<Dual64>().ratio(branch, Dual64::new(slip, 1.0), [Dual64::from_f64(0.0); 2]);
+            let found = law::<f64>().ratio(branch, slip, [0.0; 2]);
             prop_assert!((found.d_slip - slope.value.eps).abs() <= 1e-13 * (1.0 + found.d_slip.abs()));
             prop_assert!(found.value * slip <= 0.0);
             prop_assert!(found.value.abs() <= law::<f64>().limit() * (1.0 + 1e-12));

@@ -12,7 +12,7 @@
 //! for dynamics and control with physically meaningful parameters, J. Comput. Nonlinear Dyn.
 //! 11(5):054502, 2016, doi 10.1115/1.4033658; checked against a public code.)
 
-use super::{Branch, COEFFICIENT, Ends, FrictionLaw, Sloped, WHOLE, endless};
+use super::{Branch, COEFFICIENT, Ends, FrictionLaw, Inner, Sloped, WHOLE, endless};
 use crate::parameter::{Key, Kind, Otherwise, Range, Takes, Values};
 use crate::scalar::Scalar;
 
@@ -62,7 +62,7 @@ impl<S: Scalar> BrownMcPhee<S> {
 
 impl<S: Scalar> FrictionLaw<S> for BrownMcPhee<S> {
     #[inline(always)]
-    fn ratio(&self, _: Branch, slip: S, _: S) -> Sloped<S> {
+    fn ratio(&self, _: Branch, slip: S, _: Inner<S>) -> Sloped<S> {
         let n = S::from_f64;
         let x = slip / self.transition;
         let share = (n(4.0) * x).tanh();
@@ -70,11 +70,7 @@ impl<S: Scalar> FrictionLaw<S> for BrownMcPhee<S> {
         let peak = x / (bowl * bowl);
         let peak_slope = (bowl - x * x) / (bowl * bowl * bowl);
         let slope = n(4.0) * self.coefficient * (S::one() - share * share) + self.more * peak_slope;
-        Sloped {
-            value: -self.coefficient * share - self.more * peak,
-            d_slip: -slope / self.transition,
-            d_inner: S::zero(),
-        }
+        Sloped::by_slip(-self.coefficient * share - self.more * peak, -slope / self.transition)
     }
 
     fn branch(&self, _: S, _: S) -> Branch {
@@ -112,7 +108,7 @@ mod tests {
 
     #[test]
     fn the_peak_is_that_of_rest_and_far_from_it_friction_is_that_of_sliding() {
-        let at = |slip| -law::<f64>().ratio(WHOLE, slip, 0.0).value;
+        let at = |slip| -law::<f64>().ratio(WHOLE, slip, [0.0; 2]).value;
         assert!((at(0.01) - 0.15).abs() < 1e-3 * 0.1, "{}", at(0.01));
         assert!((at(1.0) - 0.1).abs() < 1e-4 && at(0.0) == 0.0);
     }
@@ -120,8 +116,8 @@ mod tests {
     proptest! {
         #[test]
         fn slopes_are_those_of_dual_numbers(slip in -2.0..2.0f64) {
-            let slope = law::<Dual64>().ratio(WHOLE, Dual64::new(slip, 1.0), Dual64::from_f64(0.0));
-            let found = law::<f64>().ratio(WHOLE, slip, 0.0);
+            let slope = law::<Dual64>().ratio(WHOLE, Dual64::new(slip, 1.0), [Dual64::from_f64(0.0); 2]);
+            let found = law::<f64>().ratio(WHOLE, slip, [0.0; 2]);
             prop_assert!((found.d_slip - slope.value.eps).abs() <= 1e-13 * (1.0 + found.d_slip.abs()));
             prop_assert!(found.value * slip <= 0.0);
             prop_assert!(found.value.abs() <= law::<f64>().limit() * (1.0 + 1e-12));

@@ -30,7 +30,7 @@
 //! All work of the friction counts as dissipated: with a normal force that changes no bristle holds
 //! an energy of its own, and what is dissipated may fall while bristles spring back.
 
-use super::{Branch, COEFFICIENT, Ends, FrictionLaw, Sloped};
+use super::{Branch, COEFFICIENT, Ends, FrictionLaw, Inner, MOST_INNER, Sloped};
 use crate::parameter::{Key, Kind, Otherwise, Range, Takes, Values};
 use crate::scalar::Scalar;
 
@@ -90,8 +90,8 @@ impl<S: Scalar> Dahl<S> {
 
 impl<S: Scalar> FrictionLaw<S> for Dahl<S> {
     #[inline(always)]
-    fn ratio(&self, _: Branch, _: S, inner: S) -> Sloped<S> {
-        Sloped { value: -self.stiffness * inner, d_slip: S::zero(), d_inner: -self.stiffness }
+    fn ratio(&self, _: Branch, _: S, [z, _]: Inner<S>) -> Sloped<S> {
+        Sloped::by_deflection(-self.stiffness * z, S::zero(), -self.stiffness)
     }
 
     /// Branches overlap by the hysteresis, where the slip's acceleration decides.
@@ -116,15 +116,15 @@ impl<S: Scalar> FrictionLaw<S> for Dahl<S> {
         S::from_f64(SLIP_SCALE)
     }
 
-    fn inner_scale(&self) -> Option<f64> {
-        Some((self.coefficient / self.stiffness).to_f64())
+    fn inner_scales(&self) -> Vec<f64> {
+        vec![(self.coefficient / self.stiffness).to_f64()]
     }
 
     #[inline(always)]
-    fn inner_rate(&self, branch: Branch, slip: S, inner: S) -> Sloped<S> {
+    fn inner_rates(&self, branch: Branch, slip: S, [z, _]: Inner<S>) -> [Sloped<S>; MOST_INNER] {
         let signed = if branch == FORWARD { self.inverse_reach } else { -self.inverse_reach };
-        let d_slip = S::one() - signed * inner;
-        Sloped { value: slip * d_slip, d_slip, d_inner: -signed * slip }
+        let d_slip = S::one() - signed * z;
+        [Sloped::by_deflection(slip * d_slip, d_slip, -signed * slip), Sloped::none()]
     }
 
     fn limit(&self) -> S {
@@ -134,6 +134,7 @@ impl<S: Scalar> FrictionLaw<S> for Dahl<S> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::bristle;
     use super::*;
     use crate::scalar::Dual64;
     use proptest::prelude::*;
@@ -150,16 +151,16 @@ mod tests {
             let z = share * REACH;
             for branch in [BACKWARD, FORWARD] {
                 let (ratio, rate) =
-                    (law::<f64>().ratio(branch, slip, z), law::<f64>().inner_rate(branch, slip, z));
+                    (bristle(&law::<f64>(), (branch, slip, z))[0], bristle(&law::<f64>(), (branch, slip, z))[1]);
                 let dual = |slip: Dual64, z: Dual64| {
                     let law = law::<Dual64>();
-                    [law.ratio(branch, slip, z), law.inner_rate(branch, slip, z)].map(|f| f.value.eps)
+                    [bristle(&law, (branch, slip, z))[0], bristle(&law, (branch, slip, z))[1]].map(|f| f.value.eps)
                 };
                 let by_slip = dual(Dual64::new(slip, 1.0), Dual64::from_re(z));
                 let by_inner = dual(Dual64::from_re(slip), Dual64::new(z, 1.0));
                 for (slopes, exact) in [
                     ([ratio.d_slip, rate.d_slip], by_slip),
-                    ([ratio.d_inner, rate.d_inner], by_inner),
+                    ([ratio.d_inner[0], rate.d_inner[0]], by_inner),
                 ] {
                     for (slope, exact) in slopes.into_iter().zip(exact) {
                         prop_assert!((slope - exact).abs() <= 1e-14 * (1.0 + exact.abs()));
@@ -173,10 +174,10 @@ mod tests {
         fn bristles_never_bend_further_than_full_friction(slip in -2.0..2.0f64) {
             let branch = law::<f64>().branch(slip, 0.0);
             let full = if slip > 0.0 { REACH } else { -REACH };
-            prop_assert!(law::<f64>().inner_rate(branch, slip, full).value.abs() <= 1e-15);
-            let beyond = law::<f64>().inner_rate(branch, slip, 1.5 * full).value;
+            prop_assert!(bristle(&law::<f64>(), (branch, slip, full))[1].value.abs() <= 1e-15);
+            let beyond = bristle(&law::<f64>(), (branch, slip, 1.5 * full))[1].value;
             prop_assert!(beyond * full <= 0.0);
-            let ratio = law::<f64>().ratio(branch, slip, full).value;
+            let ratio = bristle(&law::<f64>(), (branch, slip, full))[0].value;
             prop_assert!((ratio.abs() - 0.1).abs() < 1e-15 && ratio * slip <= 0.0);
         }
 
@@ -197,9 +198,9 @@ mod tests {
     fn both_branches_agree_where_nothing_slips() {
         let law = law::<f64>();
         for z in [-REACH, -0.3 * REACH, 0.0, REACH] {
-            assert_eq!(law.ratio(FORWARD, 0.0, z), law.ratio(BACKWARD, 0.0, z));
-            assert_eq!(law.inner_rate(FORWARD, 0.0, z).value, 0.0);
-            assert_eq!(law.inner_rate(BACKWARD, 0.0, z).value, 0.0);
+            assert_eq!(bristle(&law, (FORWARD, 0.0, z))[0], bristle(&law, (BACKWARD, 0.0, z))[0]);
+            assert_eq!(bristle(&law, (FORWARD, 0.0, z))[1].value, 0.0);
+            assert_eq!(bristle(&law, (BACKWARD, 0.0, z))[1].value, 0.0);
         }
     }
 

@@ -28,7 +28,7 @@
 //! so many that a certificate of case a ends at 3.08 ms (`docs/laws.md`). Bristles are straight when a contact begins; where the normal law pulls they bend as
 //! before, and hold nothing.
 
-use super::{Branch, COEFFICIENT, Ends, FrictionLaw, Sloped, rest_holds};
+use super::{Branch, COEFFICIENT, Ends, FrictionLaw, Inner, MOST_INNER, Sloped, rest_holds};
 use crate::parameter::{Key, Kind, Otherwise, Range, Takes, Values};
 use crate::scalar::Scalar;
 
@@ -162,23 +162,15 @@ impl<S: Scalar> ElastoPlastic<S> {
         let (alpha, by_bent, by_steady) = self.yielding(bent, steady);
         let share = alpha * bent / steady;
         let share_slope = (by_steady * bent - share) / steady * steady_slope;
-        Sloped {
-            value: slip * (S::one() - share),
-            d_slip: S::one() - share - slip * share_slope,
-            d_inner: -slip * sign * (by_bent * bent + alpha) / steady,
-        }
+        Sloped::by_deflection(slip * (S::one() - share), S::one() - share - slip * share_slope, -slip * sign * (by_bent * bent + alpha) / steady)
     }
 }
 
 impl<S: Scalar> FrictionLaw<S> for ElastoPlastic<S> {
     #[inline(always)]
-    fn ratio(&self, branch: Branch, slip: S, inner: S) -> Sloped<S> {
-        let bend = self.bend(branch, slip, inner);
-        Sloped {
-            value: -(self.stiffness * inner + self.damping * bend.value + self.viscous * slip),
-            d_slip: -(self.damping * bend.d_slip + self.viscous),
-            d_inner: -(self.stiffness + self.damping * bend.d_inner),
-        }
+    fn ratio(&self, branch: Branch, slip: S, [z, _]: Inner<S>) -> Sloped<S> {
+        let bend = self.bend(branch, slip, z);
+        Sloped::by_deflection(-(self.stiffness * z + self.damping * bend.value + self.viscous * slip), -(self.damping * bend.d_slip + self.viscous), -(self.stiffness + self.damping * bend.d_inner[0]))
     }
 
     /// Branches overlap by the hysteresis, where the slip's acceleration decides.
@@ -203,13 +195,13 @@ impl<S: Scalar> FrictionLaw<S> for ElastoPlastic<S> {
         self.stribeck
     }
 
-    fn inner_scale(&self) -> Option<f64> {
-        Some(self.sliding.to_f64())
+    fn inner_scales(&self) -> Vec<f64> {
+        vec![self.sliding.to_f64()]
     }
 
     #[inline(always)]
-    fn inner_rate(&self, branch: Branch, slip: S, inner: S) -> Sloped<S> {
-        self.bend(branch, slip, inner)
+    fn inner_rates(&self, branch: Branch, slip: S, [z, _]: Inner<S>) -> [Sloped<S>; MOST_INNER] {
+        [self.bend(branch, slip, z), Sloped::none()]
     }
 
     /// None: damping and viscous friction grow with the slip.
@@ -220,6 +212,7 @@ impl<S: Scalar> FrictionLaw<S> for ElastoPlastic<S> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::bristle;
     use super::*;
     use crate::parameter::Value;
     use crate::scalar::{Decimal, Dual64};
@@ -249,20 +242,20 @@ mod tests {
             let z = share * 1e-5;
             for branch in [BACKWARD, FORWARD] {
                 let by_slip = [
-                    law::<Dual64>().ratio(branch, Dual64::new(slip, 1.0), Dual64::from_re(z)),
-                    law::<Dual64>().inner_rate(branch, Dual64::new(slip, 1.0), Dual64::from_re(z)),
+                    bristle(&law::<Dual64>(), (branch, Dual64::new(slip, 1.0), Dual64::from_re(z)))[0],
+                    bristle(&law::<Dual64>(), (branch, Dual64::new(slip, 1.0), Dual64::from_re(z)))[1],
                 ];
                 let by_inner = [
-                    law::<Dual64>().ratio(branch, Dual64::from_re(slip), Dual64::new(z, 1.0)),
-                    law::<Dual64>().inner_rate(branch, Dual64::from_re(slip), Dual64::new(z, 1.0)),
+                    bristle(&law::<Dual64>(), (branch, Dual64::from_re(slip), Dual64::new(z, 1.0)))[0],
+                    bristle(&law::<Dual64>(), (branch, Dual64::from_re(slip), Dual64::new(z, 1.0)))[1],
                 ];
                 let found = [
-                    law::<f64>().ratio(branch, slip, z), law::<f64>().inner_rate(branch, slip, z),
+                    bristle(&law::<f64>(), (branch, slip, z))[0], bristle(&law::<f64>(), (branch, slip, z))[1],
                 ];
                 for ((found, slip), inner) in found.iter().zip(&by_slip).zip(&by_inner) {
                     let (slip, inner) = (slip.value.eps, inner.value.eps);
                     prop_assert!((found.d_slip - slip).abs() <= 1e-12 * (1.0 + slip.abs()));
-                    prop_assert!((found.d_inner - inner).abs() <= 1e-12 * (1e4 + inner.abs()));
+                    prop_assert!((found.d_inner[0] - inner).abs() <= 1e-12 * (1e4 + inner.abs()));
                 }
             }
         }
@@ -274,8 +267,8 @@ mod tests {
             let branch = law.branch(slip, 0.0);
             let steady = 1e-5 + 5e-6 * (-(slip / 1e-2).powi(2)).exp();
             let full = steady.copysign(slip);
-            prop_assert!(law.inner_rate(branch, slip, full).value.abs() <= 1e-15);
-            prop_assert!(law.inner_rate(branch, slip, 1.2 * full).value * full <= 0.0);
+            prop_assert!(bristle(&law, (branch, slip, full))[1].value.abs() <= 1e-15);
+            prop_assert!(bristle(&law, (branch, slip, 1.2 * full))[1].value * full <= 0.0);
         }
     }
 
@@ -284,11 +277,11 @@ mod tests {
         let law = law::<f64>();
         for z in [-6.9e-6, -1e-6, 0.0, 5e-6, 6.9e-6] {
             for (branch, slip) in [(FORWARD, 3e-3), (BACKWARD, -2e-2)] {
-                assert_eq!(law.inner_rate(branch, slip, z).value, slip);
+                assert_eq!(bristle(&law, (branch, slip, z))[1].value, slip);
             }
         }
         // bent the other way they spring back elastically from any deflection
-        assert_eq!(law.inner_rate(BACKWARD, -1e-3, 1.4e-5).value, -1e-3);
+        assert_eq!(bristle(&law, (BACKWARD, -1e-3, 1.4e-5))[1].value, -1e-3);
     }
 
     #[test]
@@ -322,7 +315,7 @@ mod tests {
         // classical Runge–Kutta, in steps of that way
         let (steps, mut z) = (20_000, 0.0);
         let h = way / slip / f64::from(steps);
-        let rate = |z: f64| law.inner_rate(FORWARD, slip, z).value;
+        let rate = |z: f64| bristle(&law, (FORWARD, slip, z))[1].value;
         for _ in 0..steps {
             let k1 = rate(z);
             let k2 = rate(z + 0.5 * h * k1);

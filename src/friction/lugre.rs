@@ -20,7 +20,7 @@
 //! that swings below full friction the law creeps. With σ1 large beside μ_s/v_s it may drive the slip
 //! for a moment.
 
-use super::{Branch, COEFFICIENT, Ends, FrictionLaw, Sloped};
+use super::{Branch, COEFFICIENT, Ends, FrictionLaw, Inner, MOST_INNER, Sloped};
 use crate::parameter::{Key, Kind, Otherwise, Range, Takes, Values};
 use crate::scalar::Scalar;
 
@@ -112,23 +112,15 @@ impl<S: Scalar> LuGre<S> {
         let g_slope = -(x + x) * rest / self.stribeck;
         let signed = if branch == FORWARD { self.stiffness } else { -self.stiffness } / g;
         let share = signed * z;
-        Sloped {
-            value: slip * (S::one() - share),
-            d_slip: S::one() - share + slip * share * g_slope / g,
-            d_inner: -slip * signed,
-        }
+        Sloped::by_deflection(slip * (S::one() - share), S::one() - share + slip * share * g_slope / g, -slip * signed)
     }
 }
 
 impl<S: Scalar> FrictionLaw<S> for LuGre<S> {
     #[inline(always)]
-    fn ratio(&self, branch: Branch, slip: S, inner: S) -> Sloped<S> {
-        let bend = self.bend(branch, slip, inner);
-        Sloped {
-            value: -(self.stiffness * inner + self.damping * bend.value + self.viscous * slip),
-            d_slip: -(self.damping * bend.d_slip + self.viscous),
-            d_inner: -(self.stiffness + self.damping * bend.d_inner),
-        }
+    fn ratio(&self, branch: Branch, slip: S, [z, _]: Inner<S>) -> Sloped<S> {
+        let bend = self.bend(branch, slip, z);
+        Sloped::by_deflection(-(self.stiffness * z + self.damping * bend.value + self.viscous * slip), -(self.damping * bend.d_slip + self.viscous), -(self.stiffness + self.damping * bend.d_inner[0]))
     }
 
     /// Branches overlap by the hysteresis, where the slip's acceleration decides.
@@ -153,13 +145,13 @@ impl<S: Scalar> FrictionLaw<S> for LuGre<S> {
         self.stribeck
     }
 
-    fn inner_scale(&self) -> Option<f64> {
-        Some((self.coefficient / self.stiffness).to_f64())
+    fn inner_scales(&self) -> Vec<f64> {
+        vec![(self.coefficient / self.stiffness).to_f64()]
     }
 
     #[inline(always)]
-    fn inner_rate(&self, branch: Branch, slip: S, inner: S) -> Sloped<S> {
-        self.bend(branch, slip, inner)
+    fn inner_rates(&self, branch: Branch, slip: S, [z, _]: Inner<S>) -> [Sloped<S>; MOST_INNER] {
+        [self.bend(branch, slip, z), Sloped::none()]
     }
 
     /// None: damping and viscous friction grow with the slip.
@@ -170,6 +162,7 @@ impl<S: Scalar> FrictionLaw<S> for LuGre<S> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::bristle;
     use super::*;
     use crate::scalar::Dual64;
     use proptest::prelude::*;
@@ -192,17 +185,17 @@ mod tests {
             for branch in [BACKWARD, FORWARD] {
                 let both = |slip: Dual64, z: Dual64| {
                     let law = law::<Dual64>();
-                    [law.ratio(branch, slip, z), law.inner_rate(branch, slip, z)].map(|f| f.value.eps)
+                    [bristle(&law, (branch, slip, z))[0], bristle(&law, (branch, slip, z))[1]].map(|f| f.value.eps)
                 };
                 let by_slip = both(Dual64::new(slip, 1.0), Dual64::from_re(z));
                 let by_inner = both(Dual64::from_re(slip), Dual64::new(z, 1.0));
                 let (ratio, rate) =
-                    (law::<f64>().ratio(branch, slip, z), law::<f64>().inner_rate(branch, slip, z));
+                    (bristle(&law::<f64>(), (branch, slip, z))[0], bristle(&law::<f64>(), (branch, slip, z))[1]);
                 for (slope, exact) in [
                     (ratio.d_slip, by_slip[0]),
                     (rate.d_slip, by_slip[1]),
-                    (ratio.d_inner, by_inner[0]),
-                    (rate.d_inner, by_inner[1]),
+                    (ratio.d_inner[0], by_inner[0]),
+                    (rate.d_inner[0], by_inner[1]),
                 ] {
                     prop_assert!((slope - exact).abs() <= 1e-12 * (1.0 + exact.abs()), "{slope} {exact}");
                 }
@@ -222,8 +215,8 @@ mod tests {
         let law = law::<f64>();
         let rate = |t: f64, [x, v, z]: [f64; 3]| {
             let branch = if v > 0.0 { FORWARD } else { BACKWARD };
-            let friction = law.ratio(branch, v, z).value;
-            [v, 50.0 * (0.02 * t - x) + friction, law.inner_rate(branch, v, z).value]
+            let friction = bristle(&law, (branch, v, z))[0].value;
+            [v, 50.0 * (0.02 * t - x) + friction, bristle(&law, (branch, v, z))[1].value]
         };
         let add = |y: [f64; 3], k: [f64; 3], h: f64| [y[0] + h * k[0], y[1] + h * k[1], y[2] + h * k[2]];
         let (mut t, mut y, mut compared) = (0.0, [0.0; 3], 0);

@@ -2,7 +2,7 @@
 //!
 //! A law gives F_T/F_N by branch: a piece of it that goes on smoothly beyond its edges, so that an
 //! engine which restarts where the slip passes an edge meets no kink. A law may remember something:
-//! an inner state z, with a rate of its own. Signs are the same everywhere: F_T acts on the journal
+//! inner states z, with rates of their own, which may have a say in where a branch ends. Signs are the same everywhere: F_T acts on the journal
 //! along t, and opposes a positive slip where it is negative.
 //!
 //! A new law is a file here and its line in the list of kinds.
@@ -22,6 +22,7 @@ kinds! { $
     Dahl in dahl,
     LuGre in lugre,
     ElastoPlastic in elasto_plastic,
+    Gonthier in gonthier,
     Tanh in tanh,
     BrownMcPhee in brown_mcphee,
     Threlfall in threlfall,
@@ -42,35 +43,85 @@ pub struct Ends<S> {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Branch(pub u8);
 
-/// A function of slip and inner state, with its partial derivatives.
+/// Inner states that a law may have.
+pub const MOST_INNER: usize = 2;
+
+/// The inner states of a law, each in its own unit; those that it has not are zero. The first is a
+/// deflection (m).
+pub type Inner<S> = [S; MOST_INNER];
+
+/// A function of slip and inner states, with its partial derivatives.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sloped<S> {
     /// Its value.
     pub value: S,
     /// Its derivative by the slip (over m/s).
     pub d_slip: S,
-    /// Its derivative by the inner state (over the state's unit).
-    pub d_inner: S,
+    /// Its derivatives by the inner states (over each state's unit).
+    pub d_inner: Inner<S>,
 }
 
 impl<S: Scalar> Sloped<S> {
-    /// Zero, whatever slip and inner state are.
+    /// Zero, whatever slip and inner states are.
     pub fn none() -> Self {
-        Sloped { value: S::zero(), d_slip: S::zero(), d_inner: S::zero() }
+        Sloped { value: S::zero(), d_slip: S::zero(), d_inner: [S::zero(); MOST_INNER] }
+    }
+
+    /// A function of the slip alone.
+    pub fn by_slip(value: S, d_slip: S) -> Self {
+        Sloped { value, d_slip, ..Sloped::none() }
+    }
+
+    /// A function of the slip and the first inner state.
+    pub fn by_deflection(value: S, d_slip: S, d_deflection: S) -> Self {
+        Sloped { value, d_slip, d_inner: [d_deflection, S::zero()] }
+    }
+
+    /// Of the other sign.
+    pub fn negative(self) -> Self {
+        Sloped {
+            value: -self.value,
+            d_slip: -self.d_slip,
+            d_inner: self.d_inner.map(|slope| -slope),
+        }
+    }
+
+    /// Its rate in time, from those of slip (m/s²) and inner states.
+    pub fn rate(&self, slip: S, inner: Inner<S>) -> S {
+        let remembered = self.d_inner.iter().zip(inner);
+        remembered.fold(self.d_slip * slip, |sum, (slope, rate)| sum + *slope * rate)
     }
 }
 
 /// What a friction law tells.
 pub trait FrictionLaw<S: Scalar> {
-    /// F_T/F_N of a branch, at a slip (m/s) and an inner state.
-    fn ratio(&self, branch: Branch, slip: S, inner: S) -> Sloped<S>;
+    /// F_T/F_N of a branch, at a slip (m/s) and inner states.
+    fn ratio(&self, branch: Branch, slip: S, inner: Inner<S>) -> Sloped<S>;
 
-    /// The branch of a slip (m/s) about whose past nothing is known; on an edge the one that the
-    /// slip's acceleration (m/s²) leads into.
+    /// The branch of a slip (m/s) with inner states of zero, about whose past nothing is known; on
+    /// an edge the one that the slip's acceleration (m/s²) leads into.
     fn branch(&self, slip: S, acceleration: S) -> Branch;
 
     /// The slips (m/s) at which a branch is left, below and above; infinite where it has no edge.
     fn edges(&self, branch: Branch) -> (S, S);
+
+    /// Number of edges in which inner states have a say.
+    fn inner_edges(&self) -> u8 {
+        0
+    }
+
+    /// How far a branch is from one of these, of order one; negative beyond it. `None` where the
+    /// branch has no such edge, whatever slip and inner states are.
+    fn inner_edge(&self, branch: Branch, edge: u8, slip: S, inner: Inner<S>) -> Option<Sloped<S>> {
+        let _ = (branch, edge, slip, inner);
+        None
+    }
+
+    /// The branch after `branch` was left through one of these.
+    fn across(&self, branch: Branch, edge: u8) -> Branch {
+        let _ = edge;
+        branch
+    }
 
     /// The branch after `branch` was left at `slip` (m/s) through its upper or its lower edge.
     fn beyond(&self, branch: Branch, upward: bool, slip: S) -> Branch;
@@ -78,15 +129,16 @@ pub trait FrictionLaw<S: Scalar> {
     /// A slip (m/s) that is of order one: edges are watched in units of it.
     fn slip_scale(&self) -> S;
 
-    /// Typical size of the inner state; `None` where the law remembers nothing.
-    fn inner_scale(&self) -> Option<f64> {
-        None
+    /// Typical sizes of the inner states, [`MOST_INNER`] at most; none where the law remembers
+    /// nothing.
+    fn inner_scales(&self) -> Vec<f64> {
+        Vec::new()
     }
 
-    /// ż of a branch, at a slip (m/s) and an inner state.
-    fn inner_rate(&self, branch: Branch, slip: S, inner: S) -> Sloped<S> {
+    /// ż of a branch, at a slip (m/s) and inner states.
+    fn inner_rates(&self, branch: Branch, slip: S, inner: Inner<S>) -> [Sloped<S>; MOST_INNER] {
         let _ = (branch, slip, inner);
-        Sloped::none()
+        [Sloped::none(); MOST_INNER]
     }
 
     /// F_T/F_N as a function of the slip alone; `None` where there is no such function.
@@ -100,7 +152,7 @@ pub trait FrictionLaw<S: Scalar> {
 
 impl<S: Scalar> FrictionLaw<S> for Friction<S> {
     #[inline(always)]
-    fn ratio(&self, branch: Branch, slip: S, inner: S) -> Sloped<S> {
+    fn ratio(&self, branch: Branch, slip: S, inner: Inner<S>) -> Sloped<S> {
         each_friction!(self, law => law.ratio(branch, slip, inner))
     }
 
@@ -113,6 +165,18 @@ impl<S: Scalar> FrictionLaw<S> for Friction<S> {
         each_friction!(self, law => law.edges(branch))
     }
 
+    fn inner_edges(&self) -> u8 {
+        each_friction!(self, law => law.inner_edges())
+    }
+
+    fn inner_edge(&self, branch: Branch, edge: u8, slip: S, inner: Inner<S>) -> Option<Sloped<S>> {
+        each_friction!(self, law => law.inner_edge(branch, edge, slip, inner))
+    }
+
+    fn across(&self, branch: Branch, edge: u8) -> Branch {
+        each_friction!(self, law => law.across(branch, edge))
+    }
+
     fn beyond(&self, branch: Branch, upward: bool, slip: S) -> Branch {
         each_friction!(self, law => law.beyond(branch, upward, slip))
     }
@@ -122,13 +186,13 @@ impl<S: Scalar> FrictionLaw<S> for Friction<S> {
         each_friction!(self, law => law.slip_scale())
     }
 
-    fn inner_scale(&self) -> Option<f64> {
-        each_friction!(self, law => law.inner_scale())
+    fn inner_scales(&self) -> Vec<f64> {
+        each_friction!(self, law => law.inner_scales())
     }
 
     #[inline(always)]
-    fn inner_rate(&self, branch: Branch, slip: S, inner: S) -> Sloped<S> {
-        each_friction!(self, law => law.inner_rate(branch, slip, inner))
+    fn inner_rates(&self, branch: Branch, slip: S, inner: Inner<S>) -> [Sloped<S>; MOST_INNER] {
+        each_friction!(self, law => law.inner_rates(branch, slip, inner))
     }
 
     fn ramp(&self) -> Option<Ramp> {
@@ -143,15 +207,23 @@ impl<S: Scalar> FrictionLaw<S> for Friction<S> {
 /// Steps of a decade in which the slip is looked for that bears a load.
 const STEPS_OF_A_DECADE: i32 = 20;
 
+impl<S: Scalar> Friction<S> {
+    /// Whether the law holds a load at rest, by what it remembers.
+    pub fn remembers(&self) -> bool {
+        !self.inner_scales().is_empty()
+    }
+}
+
 impl Friction<f64> {
     /// The slip (m/s) at which a joint creeps under a tangential load of so much of the normal force:
     /// the slowest with that much friction. `None` where the law holds the load by what it remembers,
     /// and where it cannot bear it at any slip.
     pub fn creep(&self, load: f64) -> Option<f64> {
-        if self.inner_scale().is_some() {
+        if self.remembers() {
             return None;
         }
-        let bears = |slip: f64| self.ratio(self.branch(slip, 0.0), slip, 0.0).value.abs() >= load;
+        let force = |slip: f64| self.ratio(self.branch(slip, 0.0), slip, [0.0; MOST_INNER]).value;
+        let bears = |slip: f64| force(slip).abs() >= load;
         let scale = self.slip_scale();
         let at = |step: i32| scale * 10_f64.powf(f64::from(step) / f64::from(STEPS_OF_A_DECADE));
         let found =
@@ -172,6 +244,14 @@ const WHOLE: Branch = Branch(0);
 fn endless<S: Scalar>() -> (S, S) {
     let far = S::from_f64(f64::INFINITY);
     (-far, far)
+}
+
+/// F_T/F_N and ż of a law with one inner state.
+#[cfg(test)]
+fn bristle<S: Scalar>(law: &impl FrictionLaw<S>, at: (Branch, S, S)) -> [Sloped<S>; 2] {
+    let (branch, slip, z) = at;
+    let inner = [z, S::zero()];
+    [law.ratio(branch, slip, inner), law.inner_rates(branch, slip, inner)[0]]
 }
 
 /// The key that all laws have.
@@ -220,7 +300,7 @@ mod tests {
     fn laws_that_remember_hold_and_others_creep_where_their_formulas_say() {
         // under half of μ = 0.1
         let known = |word: &str| match word {
-            "dahl" | "lugre" | "elasto-plastic" => None,
+            "dahl" | "lugre" | "elasto-plastic" | "gonthier" => None,
             "ambrosio" => Some(1e-3 + 0.5 * 9e-3),
             "tanh" => Some(1e-3 * 0.5_f64.atanh()),
             "threlfall" => Some(1e-3 * 2_f64.ln() / 3.0),

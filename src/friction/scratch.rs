@@ -3,7 +3,7 @@
 //! F_T = −c_f F_N v_T/v_1
 //! ```
 
-use super::{Branch, COEFFICIENT, Ends, FrictionLaw, Sloped, WHOLE, endless};
+use super::{Branch, COEFFICIENT, Ends, FrictionLaw, Inner, Sloped, WHOLE, endless};
 use crate::parameter::{Key, Kind, Otherwise, Range, Takes, Values};
 use crate::scalar::Scalar;
 
@@ -40,8 +40,8 @@ impl<S: Scalar> Scratch<S> {
 
 impl<S: Scalar> FrictionLaw<S> for Scratch<S> {
     #[inline(always)]
-    fn ratio(&self, _: Branch, slip: S, _: S) -> Sloped<S> {
-        Sloped { value: -self.0 * slip, d_slip: -self.0, d_inner: S::zero() }
+    fn ratio(&self, _: Branch, slip: S, _: Inner<S>) -> Sloped<S> {
+        Sloped::by_slip(-self.0 * slip, -self.0)
     }
 
     fn branch(&self, _: S, _: S) -> Branch {

@@ -16,7 +16,7 @@
 //! 19(4):477–500, 1991, doi 10.1080/08905459108905153; the attribution was not checked. Checked
 //! against a public code, whose jump at zero is the tangent here.)
 
-use super::{Branch, COEFFICIENT, Ends, FrictionLaw, Sloped, WHOLE, endless};
+use super::{Branch, COEFFICIENT, Ends, FrictionLaw, Inner, Sloped, WHOLE, endless};
 use crate::parameter::{Key, Kind, Otherwise, Range, Takes, Values};
 use crate::scalar::Scalar;
 
@@ -87,18 +87,14 @@ impl<S: Scalar> Stribeck<S> {
 
 impl<S: Scalar> FrictionLaw<S> for Stribeck<S> {
     #[inline(always)]
-    fn ratio(&self, _: Branch, slip: S, _: S) -> Sloped<S> {
+    fn ratio(&self, _: Branch, slip: S, _: Inner<S>) -> Sloped<S> {
         let x = slip / self.stribeck;
         let bell = self.more * (-(x * x)).exp();
         let share = (slip / self.transition).tanh();
         let share_slope = (S::one() - share * share) / self.transition;
         let full = self.coefficient + bell;
         let fall = -S::from_f64(2.0) * x * bell / self.stribeck;
-        Sloped {
-            value: -full * share - self.viscous * slip,
-            d_slip: -full * share_slope - fall * share - self.viscous,
-            d_inner: S::zero(),
-        }
+        Sloped::by_slip(-full * share - self.viscous * slip, -full * share_slope - fall * share - self.viscous)
     }
 
     fn branch(&self, _: S, _: S) -> Branch {
@@ -140,7 +136,7 @@ mod tests {
 
     #[test]
     fn friction_falls_from_that_of_rest_to_that_of_sliding_and_grows_from_there() {
-        let at = |viscous, slip| -law::<f64>(viscous).ratio(WHOLE, slip, 0.0).value;
+        let at = |viscous, slip| -law::<f64>(viscous).ratio(WHOLE, slip, [0.0; 2]).value;
         assert!((at(0.0, 1e-3) - 0.15).abs() < 1e-3 && (at(0.0, 0.1) - 0.1).abs() < 1e-12);
         assert!((at(0.0, 0.01) - (0.1 + 0.05 * (-1.0f64).exp())).abs() < 1e-12);
         assert!((at(0.5, 0.1) - 0.15).abs() < 1e-12 && at(0.5, 0.0) == 0.0);
@@ -150,11 +146,11 @@ mod tests {
         #[test]
         fn slopes_are_those_of_dual_numbers(slip in -0.1..0.1f64, viscous in 0.0..1.0f64) {
             let dual = law(Dual64::from_f64(viscous));
-            let slope = dual.ratio(WHOLE, Dual64::new(slip, 1.0), Dual64::from_f64(0.0));
-            let found = law(viscous).ratio(WHOLE, slip, 0.0);
+            let slope = dual.ratio(WHOLE, Dual64::new(slip, 1.0), [Dual64::from_f64(0.0); 2]);
+            let found = law(viscous).ratio(WHOLE, slip, [0.0; 2]);
             prop_assert!((found.d_slip - slope.value.eps).abs() <= 1e-12 * (1.0 + found.d_slip.abs()));
             prop_assert!(found.value * slip <= 0.0);
-            prop_assert!(law(0.0).ratio(WHOLE, slip, 0.0).value.abs() <= law(0.0).limit());
+            prop_assert!(law(0.0).ratio(WHOLE, slip, [0.0; 2]).value.abs() <= law(0.0).limit());
         }
     }
 }

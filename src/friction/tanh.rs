@@ -10,7 +10,7 @@
 //! Smooth, without edges. It holds no load at rest: a joint under one creeps, at up to v_d. (In wide
 //! use; checked against a public code.)
 
-use super::{Branch, COEFFICIENT, Ends, FrictionLaw, Sloped, WHOLE, endless};
+use super::{Branch, COEFFICIENT, Ends, FrictionLaw, Inner, Sloped, WHOLE, endless};
 use crate::parameter::{Key, Kind, Otherwise, Range, Takes, Values};
 use crate::scalar::Scalar;
 
@@ -51,14 +51,10 @@ impl<S: Scalar> Tanh<S> {
 
 impl<S: Scalar> FrictionLaw<S> for Tanh<S> {
     #[inline(always)]
-    fn ratio(&self, _: Branch, slip: S, _: S) -> Sloped<S> {
+    fn ratio(&self, _: Branch, slip: S, _: Inner<S>) -> Sloped<S> {
         let share = (slip / self.transition).tanh();
         let slope = (S::one() - share * share) / self.transition;
-        Sloped {
-            value: -self.coefficient * share,
-            d_slip: -self.coefficient * slope,
-            d_inner: S::zero(),
-        }
+        Sloped::by_slip(-self.coefficient * share, -self.coefficient * slope)
     }
 
     fn branch(&self, _: S, _: S) -> Branch {
@@ -95,8 +91,8 @@ mod tests {
     proptest! {
         #[test]
         fn slopes_are_those_of_dual_numbers(slip in -2.0..2.0f64) {
-            let slope = law::<Dual64>().ratio(WHOLE, Dual64::new(slip, 1.0), Dual64::from_f64(0.0));
-            let found = law::<f64>().ratio(WHOLE, slip, 0.0);
+            let slope = law::<Dual64>().ratio(WHOLE, Dual64::new(slip, 1.0), [Dual64::from_f64(0.0); 2]);
+            let found = law::<f64>().ratio(WHOLE, slip, [0.0; 2]);
             prop_assert!((found.d_slip - slope.value.eps).abs() <= 1e-13 * (1.0 + found.d_slip.abs()));
             prop_assert!(found.value * slip <= 0.0);
             prop_assert!(found.value.abs() <= law::<f64>().limit() * (1.0 + 1e-12));

@@ -15,7 +15,7 @@
 //! doi 10.1016/0094-114X(78)90020-4; checked against a public code.)
 
 use super::pieces::Pieces;
-use super::{Branch, COEFFICIENT, Ends, FrictionLaw, Sloped};
+use super::{Branch, COEFFICIENT, Ends, FrictionLaw, Inner, Sloped};
 use crate::parameter::{Key, Kind, Otherwise, Range, Takes, Values};
 use crate::scalar::Scalar;
 
@@ -65,7 +65,7 @@ impl<S: Scalar> Threlfall<S> {
 
 impl<S: Scalar> FrictionLaw<S> for Threlfall<S> {
     #[inline(always)]
-    fn ratio(&self, Branch(piece): Branch, slip: S, _: S) -> Sloped<S> {
+    fn ratio(&self, Branch(piece): Branch, slip: S, _: Inner<S>) -> Sloped<S> {
         let forward = if piece < 2 { -S::one() } else { S::one() };
         let (share, slope) = match piece {
             0 | 3 => (S::from_f64(BEYOND), S::zero()),
@@ -75,11 +75,7 @@ impl<S: Scalar> FrictionLaw<S> for Threlfall<S> {
                 (S::one() - left, rate * left)
             }
         };
-        Sloped {
-            value: -self.coefficient * forward * share,
-            d_slip: -self.coefficient * slope,
-            d_inner: S::zero(),
-        }
+        Sloped::by_slip(-self.coefficient * forward * share, -self.coefficient * slope)
     }
 
     fn branch(&self, slip: S, acceleration: S) -> Branch {
@@ -119,7 +115,7 @@ mod tests {
 
     #[test]
     fn friction_is_that_of_the_print() {
-        let at = |slip: f64| law::<f64>().ratio(law::<f64>().branch(slip, 1.0), slip, 0.0).value;
+        let at = |slip: f64| law::<f64>().ratio(law::<f64>().branch(slip, 1.0), slip, [0.0; 2]).value;
         assert!((at(0.005) + 0.1 * (1.0 - (-1.5f64).exp())).abs() < 1e-16);
         assert_eq!((at(0.02), at(-0.02), at(0.0)), (-0.095, 0.095, 0.0));
     }
@@ -128,8 +124,8 @@ mod tests {
         #[test]
         fn slopes_are_those_of_dual_numbers_and_friction_opposes_slip(slip in -0.03..0.03f64) {
             let branch = law::<f64>().branch(slip, 0.0);
-            let slope = law::<Dual64>().ratio(branch, Dual64::new(slip, 1.0), Dual64::from_f64(0.0));
-            let found = law::<f64>().ratio(branch, slip, 0.0);
+            let slope = law::<Dual64>().ratio(branch, Dual64::new(slip, 1.0), [Dual64::from_f64(0.0); 2]);
+            let found = law::<f64>().ratio(branch, slip, [0.0; 2]);
             prop_assert!((found.d_slip - slope.value.eps).abs() <= 1e-13 * (1.0 + found.d_slip.abs()));
             prop_assert!(found.value * slip <= 0.0);
             prop_assert!(found.value.abs() <= law::<f64>().limit());

@@ -1,7 +1,7 @@
 //! Forces on the bodies, accelerations and multipliers, and what the drives must do.
 
 use super::layout::{Coupling, Role};
-use super::{Mechanism, Touch};
+use super::{Mechanism, Touch, inner_states};
 use crate::clearance::Mode;
 use crate::dae::State;
 use crate::linear::Singular;
@@ -22,12 +22,10 @@ impl<S: Scalar> Mechanism<S> {
             load.apply(now.time, masses, &now.poses, &now.motions, &mut now.wrenches);
         }
         for (k, clearance) in self.model.clearances().iter().enumerate() {
-            let place = self.inner_places[k];
+            let places = self.inner_places[k].clone();
             let Mode::Contact(contact) = &self.modes[k] else {
                 now.touches[k] = None;
-                if let Some(place) = place {
-                    now.z_dot[place] = S::zero();
-                }
+                now.z_dot[places].fill(S::zero());
                 continue;
             };
             let mut gap = now.gap(k, clearance);
@@ -37,11 +35,14 @@ impl<S: Scalar> Mechanism<S> {
             if let Some(root) = root {
                 gap.depth = clearance.normal.depth_from_root(root);
             }
-            let inner = place.map_or(S::zero(), |place| now.z[place]);
-            if let Some(place) = place {
-                let bend = clearance.inner_rate(contact, &rates, inner);
-                now.z_dot[place] = bend.value;
-                now.relaxation = now.relaxation.max(-bend.d_inner.to_f64());
+            let inner = inner_states(&now.z, &places);
+            if !places.is_empty() {
+                let all = clearance.inner_rates(contact, &rates, inner);
+                for (which, place) in places.enumerate() {
+                    let rate = &all[which];
+                    now.z_dot[place] = rate.value;
+                    now.relaxation = now.relaxation.max(-rate.d_inner[which].to_f64());
+                }
             }
             let force = clearance.force(contact, &gap, &rates, inner, root);
             let [bearing, journal] = clearance.wrenches(&gap, &force);

@@ -8,7 +8,7 @@
 //! y = (q, v, z, λ); the Jacobian is ∂r/∂y + c_j ∂r/∂ẏ. It is tested against dual numbers, column by
 //! column.
 
-use super::Mechanism;
+use super::{Mechanism, inner_states};
 use super::layout::Role;
 use crate::clearance::Mode;
 use crate::dae::{Dae, Entries, Fault, State};
@@ -119,15 +119,18 @@ impl Mechanism<f64> {
         let law = &self.model.clearances()[k];
         let n = self.layout.coordinates;
         let (gap, rates, force) = (&touch.gap, &touch.rates, &touch.force);
-        let inner = self.inner_places[k].map(|place| {
-            let at = 2 * n + place;
-            (at, law.inner_rate(contact, rates, self.now.z[place]))
-        });
-        if let Some((at, rate)) = inner {
-            let slopes = law.inner_slopes(gap, rates, force);
+        let places = &self.inner_places[k];
+        let first = 2 * n + places.start;
+        let bends = law.inner_rates(contact, rates, inner_states(&self.now.z, places));
+        let bends = &bends[..places.len()];
+        for inner in 0..bends.len() {
+            let at = first + inner;
+            let slopes = law.inner_slopes(gap, rates, force, inner);
             self.subtract(law.pair.i, at, &slopes.bearing, j);
             self.subtract(law.pair.j, at, &slopes.journal, j);
-            j.add(at, at, -rate.d_inner);
+            for (row, rate) in bends.iter().enumerate() {
+                j.add(first + row, at, -rate.d_inner[inner]);
+            }
         }
         for (of_journal, body) in [(false, law.pair.i), (true, law.pair.j)] {
             let Some(at) = self.place_in_q(body) else { continue };
@@ -142,9 +145,9 @@ impl Mechanism<f64> {
                 let slopes = law.force_slopes(gap, rates, force, &by_v, None);
                 self.subtract(law.pair.i, n + at + c, &slopes.bearing, j);
                 self.subtract(law.pair.j, n + at + c, &slopes.journal, j);
-                if let Some((row, rate)) = inner {
-                    j.add(row, at + c, -(rate.d_slip * by_q.slip));
-                    j.add(row, n + at + c, -(rate.d_slip * by_v.slip));
+                for (row, rate) in bends.iter().enumerate() {
+                    j.add(first + row, at + c, -(rate.d_slip * by_q.slip));
+                    j.add(first + row, n + at + c, -(rate.d_slip * by_v.slip));
                 }
             }
         }

@@ -198,7 +198,7 @@ impl<S: Scalar> Mechanism<S> {
         let swing = touches.fold(0.0, |sum, (touch, mobility)| match touch {
             Some(touch) => {
                 let [along, across] = mobility;
-                let bristles = touch.force.tangential_slope().to_f64().abs();
+                let bristles = touch.force.tangential_slopes()[0].to_f64().abs();
                 sum + along * touch.force.normal.swing.to_f64().abs() + across * bristles
             }
             None => sum,

@@ -22,7 +22,7 @@ pub use system::{ContactRates, SingularPosition};
 
 use crate::clearance::{Clearance, ContactForce, EventSlot, Gap, GapRates, Mode};
 use crate::dae::{Snapshot, Watch};
-use crate::friction::FrictionLaw;
+use crate::friction::{FrictionLaw, Inner, MOST_INNER};
 use crate::joint::{Arms, Blocks, MOST_BODIES, Relation};
 use crate::linear::Symmetric;
 use crate::model::{Complaint, Model};
@@ -30,6 +30,7 @@ use crate::plane::{Motion, Pose, Vector, Wrench};
 use crate::scalar::Scalar;
 use layout::{Layout, Role};
 use measure::ForceSource;
+use std::ops::Range;
 
 /// A mechanism with its modes, evaluated at one state at a time.
 #[derive(Debug, Clone)]
@@ -51,8 +52,8 @@ pub struct Mechanism<S> {
     start_accuracy: f64,
     coordinate_scales: Vec<f64>,
     velocity_scales: Vec<f64>,
-    /// Place in z of the inner state of each clearance's friction, where it has one.
-    inner_places: Vec<Option<usize>>,
+    /// Places in z of the inner states of each clearance's friction.
+    inner_places: Vec<Range<usize>>,
     inner_scales: Vec<f64>,
     length: f64,
     /// Where the force of each joint stands.
@@ -158,7 +159,7 @@ impl<S: Scalar> Mechanism<S> {
                 clearance.event_slots().into_iter().map(move |slot| (k, slot))
             })
             .collect();
-        let (inner_places, inner_scales) = inner_states(&model);
+        let (inner_places, inner_scales) = inner_places(&model);
         let depth_slots = (0..slots.len()).filter(|slot| slots[*slot].1 == EventSlot::Depth);
         let mut mechanism = Mechanism {
             depth_slots: depth_slots.collect(),
@@ -267,9 +268,9 @@ impl<S: Scalar> Mechanism<S> {
     /// Puts to zero what is remembered of contacts that have ended: bristles that nothing touches
     /// are straight.
     pub fn release(&self, z: &mut [S]) {
-        for (mode, place) in self.modes.iter().zip(&self.inner_places) {
-            if let (Mode::Flight, Some(place)) = (mode, place) {
-                z[*place] = S::zero();
+        for (mode, places) in self.modes.iter().zip(&self.inner_places) {
+            if let Mode::Flight = mode {
+                z[places.clone()].fill(S::zero());
             }
         }
     }
@@ -297,15 +298,24 @@ impl<S: Scalar> Mechanism<S> {
     }
 }
 
-/// Place in z of the inner state of each clearance's friction, and the sizes of all of them.
-fn inner_states<S: Scalar>(model: &Model<S>) -> (Vec<Option<usize>>, Vec<f64>) {
+/// Places in z of the inner states of each clearance's friction, and the sizes of all of them.
+fn inner_places<S: Scalar>(model: &Model<S>) -> (Vec<Range<usize>>, Vec<f64>) {
     let mut sizes = Vec::new();
     let mut place = |clearance: &Clearance<S>| {
-        sizes.push(clearance.friction?.inner_scale()?);
-        Some(sizes.len() - 1)
+        let first = sizes.len();
+        sizes.extend(clearance.friction.iter().flat_map(FrictionLaw::inner_scales));
+        first..sizes.len()
     };
     let places = model.clearances().iter().map(&mut place).collect();
     (places, sizes)
+}
+
+/// The inner states at some places in z; those that are not there are zero.
+#[inline(always)]
+fn inner_states<S: Scalar>(z: &[S], places: &Range<usize>) -> Inner<S> {
+    let mut inner = [S::zero(); MOST_INNER];
+    inner[..places.len()].copy_from_slice(&z[places.clone()]);
+    inner
 }
 
 /// c^power, with the power in which the contact law is smooth.

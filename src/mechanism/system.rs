@@ -1,6 +1,6 @@
 //! The mechanism as every engine sees it.
 
-use super::Mechanism;
+use super::{Mechanism, inner_states};
 use super::layout::Role;
 use crate::clearance::{Bodies, Clearance, Gap, Mode};
 use crate::contact::Penetration;
@@ -117,9 +117,10 @@ impl<S: Scalar> System<S> for Mechanism<S> {
         let mut at = 0;
         for (k, clearance) in self.model.clearances().iter().enumerate() {
             let gap = self.now.gap(k, clearance);
+            let inner = inner_states(state.z, &self.inner_places[k]);
+            let rates = || clearance.rates(&gap, motions);
             while let Some((_, slot)) = self.slots.get(at).filter(|(owner, _)| *owner == k) {
-                values[at] = clearance
-                    .event_value(&self.modes[k], *slot, &gap, || clearance.rates(&gap, motions));
+                values[at] = clearance.event_value(&self.modes[k], *slot, &gap, inner, rates);
                 at += 1;
             }
         }
@@ -141,7 +142,8 @@ impl<S: Scalar> System<S> for Mechanism<S> {
             crate::clearance::EventSlot::Depth => (S::zero(), S::zero()),
             _ => clearance.second_rates(&gap, &rates, &now.motions, &now.accelerations),
         };
-        clearance.event_rate(&self.modes[k], what, &gap, rates.rate, second)
+        let inner = inner_states(&now.z, &self.inner_places[k]);
+        clearance.event_rate(&self.modes[k], what, &gap, inner, &rates, second)
     }
 
     fn course(&self, slot: usize) -> Course {
@@ -154,7 +156,8 @@ impl<S: Scalar> System<S> for Mechanism<S> {
         };
         let bodies =
             Bodies { poses: &now.poses, motions: &now.motions, accelerations: &now.accelerations };
-        clearance.course(&self.modes[k], what, &gap, bodies, !now.offsets.is_empty())
+        let inner = inner_states(&now.z, &self.inner_places[k]);
+        clearance.course(&self.modes[k], what, &gap, inner, bodies, !now.offsets.is_empty())
     }
 
     fn project(&mut self, time: S, q: &mut [S], v: &mut [S]) -> Result<f64, Fault> {
