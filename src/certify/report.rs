@@ -225,12 +225,7 @@ fn ms(time: f64) -> String {
 /// An event, and where.
 fn event_words(event: &Event, names: &Names) -> String {
     let joint = names.clearances.get(event.clearance).map_or("?", String::as_str);
-    let what = match event.kind {
-        EventKind::ContactBegins => "a contact begins",
-        EventKind::ContactEnds => "a contact ends",
-        EventKind::FrictionKink => "the slip passes an edge of friction",
-        EventKind::Tension => "tension begins or ends",
-    };
+    let what = event.kind.sentence();
     format!("{what} in {joint} at {}", ms(event.time))
 }
 

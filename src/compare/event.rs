@@ -5,14 +5,6 @@ use crate::digits::{self, Likes};
 use crate::record::ResultFile;
 use crate::run::{Contact, Event, EventKind};
 
-/// Kinds of event, with the names they have in result files.
-pub const KINDS: [(EventKind, &str); 4] = [
-    (EventKind::ContactBegins, "contact_begins"),
-    (EventKind::ContactEnds, "contact_ends"),
-    (EventKind::FrictionKink, "friction_kink"),
-    (EventKind::Tension, "tension_begins_or_ends"),
-];
-
 /// An event that both have.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pair {
@@ -116,7 +108,7 @@ impl EventComparison {
 /// Events up to a time (s), by clearance and kind.
 fn rows(theirs: &[Event], reference: &[Event], clearances: usize, until: f64) -> Vec<EventRow> {
     let likes = digits::events(theirs, reference, until);
-    let sorts = (0..clearances).flat_map(|k| KINDS.map(|(kind, name)| (k, kind, name)));
+    let sorts = (0..clearances).flat_map(|k| EventKind::ALL.map(|kind| (k, kind, kind.word())));
     let rows = sorts.map(|(clearance, kind, name)| {
         let is = |event: &Event| event.clearance == clearance && event.kind == kind;
         row(&likes, theirs, reference, until, is, (clearance, name))

@@ -28,7 +28,9 @@ pub use names::names_of_runs;
 pub use overview::Overview;
 pub(crate) use publish::{Draft, abandon_drafts};
 pub use reader::{ResultFile, Table};
-pub use schema::{DATASETS, Dataset, Dimension, SCHEMA_VERSION, Source, Values, column_name};
+pub use schema::{
+    DATASETS, Dataset, Dimension, Drawn, Place, Quantity, SCHEMA_VERSION, Source, Values, column_name,
+};
 pub use seal::{Seal, sha256};
 pub(crate) use segments::program;
 pub use segments::{Resumed, Segmented, first_difference, has_segments, is_whole, tidy};

@@ -1,7 +1,7 @@
 //! Reading result files.
 
 use super::schema::{
-    DATASETS, Dataset, Dimension, Part, SCHEMA_VERSION, Side, Source, column_name,
+    DATASETS, Dataset, Dimension, Part, Place, SCHEMA_VERSION, Side, Source, Values, column_name,
 };
 use super::sound::{Member, Ration, members};
 use super::{Attribute, Error, LibraryError};
@@ -9,7 +9,7 @@ use crate::mechanism::{
     BodyObservation, ClearanceObservation, JointObservation, Measure, Measures, Observation,
 };
 use crate::model::{did_you_mean, is_name, shortened};
-use crate::run::{Contact, Event, EventKind, Extremum, Peak, Revolution};
+use crate::run::{Contact, Event, Extremum, Peak, Revolution};
 use hdf5::{File, IndexType, IterationOrder, MinorErrorCode};
 use ndarray::{Array2, s};
 use std::collections::HashSet;
@@ -46,6 +46,9 @@ impl Table {
         self.values.iter().skip(item).step_by(self.width.max(1)).copied().collect()
     }
 }
+
+/// Datasets that results of older programs do not have.
+const LATER: [&str; 1] = ["contact_peak_penetration_time"];
 
 impl ResultFile {
     /// Opens a result file.
@@ -276,108 +279,78 @@ impl ResultFile {
             ..Observation::default()
         };
         let mut all = vec![none; rows.len()];
-        let mut read = |name: &str, put: fn(&mut Observation, usize, f64)| {
-            let table = self.table_rows(self.dataset(name)?, rows.clone())?;
+        let along_samples = DATASETS.iter().filter(|dataset| dataset.rows() == Dimension::Time);
+        for dataset in along_samples {
+            let table = self.table_rows(self.dataset(dataset.name)?, rows.clone())?;
             for (sample, values) in all.iter_mut().zip(table.values.chunks(table.width.max(1))) {
-                values.iter().enumerate().for_each(|(item, value)| put(sample, item, *value));
+                for (item, value) in values.iter().enumerate() {
+                    dataset.put(sample, item, *value);
+                }
             }
-            Ok::<_, Error>(())
-        };
-        read("time", |o, _, x| o.time = x)?;
-        read("position_x", |o, k, x| o.bodies[k].position[0] = x)?;
-        read("position_y", |o, k, x| o.bodies[k].position[1] = x)?;
-        read("angle", |o, k, x| o.bodies[k].angle = x)?;
-        read("velocity_x", |o, k, x| o.bodies[k].velocity[0] = x)?;
-        read("velocity_y", |o, k, x| o.bodies[k].velocity[1] = x)?;
-        read("angular_velocity", |o, k, x| o.bodies[k].angular_velocity = x)?;
-        read("acceleration_x", |o, k, x| o.bodies[k].acceleration[0] = x)?;
-        read("acceleration_y", |o, k, x| o.bodies[k].acceleration[1] = x)?;
-        read("angular_acceleration", |o, k, x| o.bodies[k].angular_acceleration = x)?;
-        read("clearance_x", |o, k, x| o.clearances[k].offset[0] = x)?;
-        read("clearance_y", |o, k, x| o.clearances[k].offset[1] = x)?;
-        read("eccentricity", |o, k, x| o.clearances[k].eccentricity = x)?;
-        read("penetration", |o, k, x| o.clearances[k].penetration = x)?;
-        read("penetration_rate", |o, k, x| o.clearances[k].penetration_rate = x)?;
-        read("slip_velocity", |o, k, x| o.clearances[k].slip_velocity = x)?;
-        read("normal_force", |o, k, x| o.clearances[k].normal_force = x)?;
-        read("tangential_force", |o, k, x| o.clearances[k].tangential_force = x)?;
-        read("in_contact", |o, k, x| o.clearances[k].in_contact = x != 0.0)?;
-        read("joint_force_x", |o, k, x| o.joints[k].force[0] = x)?;
-        read("joint_force_y", |o, k, x| o.joints[k].force[1] = x)?;
-        read("joint_moment", |o, k, x| o.joints[k].moment = x)?;
-        read("drive_torque", |o, k, x| o.drive_torques[k] = x)?;
-        read("energy_kinetic", |o, _, x| o.energy.kinetic = x)?;
-        read("energy_potential", |o, _, x| o.energy.potential = x)?;
-        read("energy_elastic", |o, _, x| o.energy.elastic = x)?;
-        read("energy_dissipated", |o, _, x| o.energy.dissipated = x)?;
-        read("drive_work", |o, _, x| o.energy.drive_work = x)?;
-        read("load_work", |o, _, x| o.energy.load_work = x)?;
-        read("energy_residual", |o, _, x| o.energy.residual = x)?;
+        }
         Ok(all)
     }
 
     /// All events.
     pub fn events(&self) -> Result<Vec<Event>, Error> {
-        let [time, clearance, kind, rate] =
-            self.tables(["event_time", "event_clearance", "event_kind", "event_rate"])?;
-        (0..time.len())
-            .map(|k| {
-                Ok(Event {
-                    time: time[k],
-                    clearance: self.clearance_index(clearance[k])?,
-                    kind: self.event_kind(kind[k])?,
-                    rate: rate[k],
-                })
-            })
-            .collect()
+        self.entries(Dimension::Event, Event::default(), |source| match source {
+            Source::Event(place) => Some(place),
+            _ => None,
+        })
     }
 
     /// All contacts.
     pub fn contacts(&self) -> Result<Vec<Contact>, Error> {
-        let [clearance, begin, end, impact_rate] = self.tables([
-            "contact_clearance",
-            "contact_begin",
-            "contact_end",
-            "contact_impact_rate",
-        ])?;
-        let [peak_penetration, peak_force, peak_time, dissipated] = self.tables([
-            "contact_peak_penetration",
-            "contact_peak_force",
-            "contact_peak_time",
-            "contact_dissipated",
-        ])?;
-        // files of older programs do not have it
-        let deepest = match self.dataset("contact_peak_penetration_time") {
-            Ok(dataset) => self.table(dataset.name)?.values,
-            Err(_) => vec![f64::NAN; begin.len()],
-        };
-        (0..begin.len())
-            .map(|k| {
-                Ok(Contact {
-                    clearance: self.clearance_index(clearance[k])?,
-                    begin: begin[k],
-                    end: end[k],
-                    impact_rate: impact_rate[k],
-                    peak_penetration: peak_penetration[k],
-                    peak_penetration_time: deepest[k],
-                    peak_force: peak_force[k],
-                    peak_time: peak_time[k],
-                    dissipated: dissipated[k],
-                })
-            })
-            .collect()
+        // files of older programs do not have that time
+        let none = Contact { peak_penetration_time: f64::NAN, ..Contact::default() };
+        self.entries(Dimension::Contact, none, |source| match source {
+            Source::Contact(place) => Some(place),
+            _ => None,
+        })
     }
 
     /// All local maxima of normal forces.
     pub fn peaks(&self) -> Result<Vec<Peak>, Error> {
-        let [time, clearance, force] =
-            self.tables(["peak_time", "peak_clearance", "peak_force"])?;
-        (0..time.len())
-            .map(|k| {
-                let clearance = self.clearance_index(clearance[k])?;
-                Ok(Peak { time: time[k], clearance, force: force[k] })
-            })
-            .collect()
+        self.entries(Dimension::Peak, Peak::default(), |source| match source {
+            Source::Peak(place) => Some(place),
+            _ => None,
+        })
+    }
+
+    /// All entries along a dimension, each `none` with its values put in.
+    fn entries<T: Copy>(
+        &self,
+        dimension: Dimension,
+        none: T,
+        place_of: impl Fn(Source) -> Option<Place<T>>,
+    ) -> Result<Vec<T>, Error> {
+        let mut all = vec![none; self.length(dimension)];
+        for dataset in &DATASETS {
+            let Some(place) = place_of(dataset.source) else { continue };
+            if LATER.contains(&dataset.name) && !self.file.link_exists(dataset.name) {
+                continue;
+            }
+            let values = self.table(dataset.name)?.values;
+            for (entry, value) in all.iter_mut().zip(values) {
+                self.check_value(dataset, value)?;
+                (place.put)(entry, value);
+            }
+        }
+        Ok(all)
+    }
+
+    /// That an index or a flag is one of those there are.
+    fn check_value(&self, dataset: &Dataset, value: f64) -> Result<(), Error> {
+        let (what, count) = match dataset.values {
+            Values::Real => return Ok(()),
+            Values::Index => ("clearance", self.length(Dimension::Clearance)),
+            Values::Flag(meanings) => ("kind", meanings.len()),
+        };
+        if value >= 0.0 && value < count as f64 {
+            return Ok(());
+        }
+        let name = dataset.name;
+        Err(self.damaged(format!("{name} speaks of a {what} {value}, there are {count}")))
     }
 
     /// Extremes by revolution; none in files of programs that did not keep them.
@@ -438,26 +411,6 @@ impl ResultFile {
             *table = self.table(name)?.values;
         }
         Ok(tables)
-    }
-
-    fn clearance_index(&self, value: f64) -> Result<usize, Error> {
-        let index = value as usize;
-        if value < 0.0 || index >= self.length(Dimension::Clearance) {
-            return Err(self.damaged(format!("it speaks of a clearance with index {value}")));
-        }
-        Ok(index)
-    }
-
-    fn event_kind(&self, value: f64) -> Result<EventKind, Error> {
-        [
-            EventKind::ContactBegins,
-            EventKind::ContactEnds,
-            EventKind::FrictionKink,
-            EventKind::Tension,
-        ]
-        .into_iter()
-        .find(|kind| f64::from(*kind as u8) == value)
-        .ok_or_else(|| self.damaged(format!("there is no kind of event {value}")))
     }
 
     fn read_attributes(&self) -> Result<Vec<(String, Attribute)>, Error> {

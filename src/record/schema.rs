@@ -3,7 +3,7 @@
 use crate::mechanism::{
     BodyObservation, ClearanceObservation, JointObservation, Measure, Observation,
 };
-use crate::run::{Contact, Event, Peak, Revolution};
+use crate::run::{Contact, Event, EventKind, Peak, Revolution};
 
 /// Version of the layout; it grows when a name is dropped or changes its meaning.
 pub const SCHEMA_VERSION: i64 = 1;
@@ -87,27 +87,44 @@ pub enum Values {
     Flag(&'static [&'static str]),
 }
 
+/// Where a value stands in what is written: for the writer, and for the reader that puts it back.
+#[derive(Debug)]
+pub struct Place<T> {
+    /// The value.
+    pub get: fn(&T) -> f64,
+    /// Puts a value there.
+    pub put: fn(&mut T, f64),
+}
+
+impl<T> Clone for Place<T> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<T> Copy for Place<T> {}
+
 /// Where the values of a dataset come from, which also gives its dimensions.
 #[derive(Debug, Clone, Copy)]
 pub enum Source {
     /// A value of each sample.
-    Sample(fn(&Observation) -> f64),
+    Sample(Place<Observation>),
     /// A value of each body at each sample.
-    Body(fn(&BodyObservation) -> f64),
+    Body(Place<BodyObservation>),
     /// A value of each joint with clearance at each sample.
-    Clearance(fn(&ClearanceObservation) -> f64),
+    Clearance(Place<ClearanceObservation>),
     /// A value of each joint at each sample.
-    Joint(fn(&JointObservation) -> f64),
+    Joint(Place<JointObservation>),
     /// The torque of each drive at each sample.
     Drive,
     /// A value of each event.
-    Event(fn(&Event) -> f64),
+    Event(Place<Event>),
     /// A value of each contact.
-    Contact(fn(&Contact) -> f64),
+    Contact(Place<Contact>),
     /// A value of each peak of a normal force.
-    Peak(fn(&Peak) -> f64),
+    Peak(Place<Peak>),
     /// A value of each revolution.
-    Revolution(fn(&Revolution) -> f64),
+    Revolution(Place<Revolution>),
     /// An extreme of each body, joint, clearance or drive in each revolution.
     Extreme(Measure, Side, Part),
 }
@@ -143,6 +160,43 @@ pub struct Dataset {
     pub values: Values,
     /// Where they come from.
     pub source: Source,
+    /// What comparisons count it to.
+    pub quantity: Option<Quantity>,
+    /// How the report page draws it over time.
+    pub drawn: Drawn,
+}
+
+/// A kind of quantity; all its columns are compared with one scale, but for clearances, which have
+/// one each.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Quantity {
+    /// Angles of the bodies (rad).
+    Angle,
+    /// Angular rates of the bodies (rad/s).
+    AngularRate,
+    /// Velocities of the mass centres (m/s).
+    Velocity,
+    /// Clearance vectors (m).
+    Clearance,
+    /// Positions of the mass centres (m).
+    Position,
+    /// Forces in clearances and joints (N).
+    Force,
+    /// Torques of the drives (N m).
+    Torque,
+    /// Moments of the joints (N m).
+    Moment,
+}
+
+/// How a page that has fewer samples than the file draws a dataset.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Drawn {
+    /// Not at all.
+    No,
+    /// By any samples.
+    Smooth,
+    /// With its extremes.
+    Extremes,
 }
 
 impl Dataset {
@@ -176,6 +230,46 @@ impl Dataset {
         }
     }
 
+    /// The value of one of its items in a sample; NaN where it is not along samples.
+    pub fn value(&self, sample: &Observation, item: usize) -> f64 {
+        match self.source {
+            Source::Sample(place) => (place.get)(sample),
+            Source::Body(place) => (place.get)(&sample.bodies[item]),
+            Source::Clearance(place) => (place.get)(&sample.clearances[item]),
+            Source::Joint(place) => (place.get)(&sample.joints[item]),
+            Source::Drive => sample.drive_torques[item],
+            Source::Event(_)
+            | Source::Contact(_)
+            | Source::Peak(_)
+            | Source::Revolution(_)
+            | Source::Extreme(..) => f64::NAN,
+        }
+    }
+
+    /// Puts a value into a sample, if it is along samples.
+    pub fn put(&self, sample: &mut Observation, item: usize, value: f64) {
+        match self.source {
+            Source::Sample(place) => (place.put)(sample, value),
+            Source::Body(place) => (place.put)(&mut sample.bodies[item], value),
+            Source::Clearance(place) => (place.put)(&mut sample.clearances[item], value),
+            Source::Joint(place) => (place.put)(&mut sample.joints[item], value),
+            Source::Drive => sample.drive_torques[item] = value,
+            Source::Event(_)
+            | Source::Contact(_)
+            | Source::Peak(_)
+            | Source::Revolution(_)
+            | Source::Extreme(..) => {}
+        }
+    }
+
+    const fn compared(self, quantity: Quantity) -> Dataset {
+        Dataset { quantity: Some(quantity), ..self }
+    }
+
+    const fn drawn(self, drawn: Drawn) -> Dataset {
+        Dataset { drawn, ..self }
+    }
+
     /// The dataset of this name.
     pub fn find(name: &str) -> Option<&'static Dataset> {
         DATASETS.iter().find(|dataset| dataset.name == name)
@@ -187,17 +281,41 @@ pub fn column_name(dataset: &str, item: Option<&str>) -> String {
     item.map_or(dataset.to_owned(), |item| format!("{dataset}.{item}"))
 }
 
+/// A field of what is written.
+macro_rules! at {
+    ($($field:tt)+) => {
+        Place { get: |of| of.$($field)+, put: |of, value| of.$($field)+ = value }
+    };
+}
+
+/// A field that is an index.
+macro_rules! at_index {
+    ($field:ident) => {
+        Place { get: |of| of.$field as f64, put: |of, value| of.$field = value as usize }
+    };
+}
+
+const fn dataset(
+    name: &'static str,
+    unit: &'static str,
+    long_name: &'static str,
+    values: Values,
+    source: Source,
+) -> Dataset {
+    Dataset { name, unit, long_name, values, source, quantity: None, drawn: Drawn::No }
+}
+
 const fn real(
     name: &'static str,
     unit: &'static str,
     long_name: &'static str,
     source: Source,
 ) -> Dataset {
-    Dataset { name, unit, long_name, values: Values::Real, source }
+    dataset(name, unit, long_name, Values::Real, source)
 }
 
 const fn index(name: &'static str, long_name: &'static str, source: Source) -> Dataset {
-    Dataset { name, unit: "1", long_name, values: Values::Index, source }
+    dataset(name, "1", long_name, Values::Index, source)
 }
 
 const fn flag(
@@ -206,7 +324,7 @@ const fn flag(
     meanings: &'static [&'static str],
     source: Source,
 ) -> Dataset {
-    Dataset { name, unit: "1", long_name, values: Values::Flag(meanings), source }
+    dataset(name, "1", long_name, Values::Flag(meanings), source)
 }
 
 const fn extreme(
@@ -222,196 +340,204 @@ const fn extreme(
 
 /// Every dataset but the index scales, in the order in which they stand in a file.
 pub static DATASETS: [Dataset; 74] = {
+    use Drawn::{Extremes, Smooth};
     use Measure as M;
+    use Quantity as Q;
     use Source::{Body, Clearance, Contact, Drive, Event, Joint, Peak, Revolution, Sample};
     [
-        real("time", "s", "time", Sample(|o| o.time)),
-        real("position_x", "m", "x of the mass centre, fixed frame", Body(|b| b.position[0])),
-        real("position_y", "m", "y of the mass centre, fixed frame", Body(|b| b.position[1])),
-        real("angle", "rad", "angle of the body, not wrapped", Body(|b| b.angle)),
-        real("velocity_x", "m/s", "x of the mass centre's velocity", Body(|b| b.velocity[0])),
-        real("velocity_y", "m/s", "y of the mass centre's velocity", Body(|b| b.velocity[1])),
-        real("angular_velocity", "rad/s", "angular rate of the body", Body(|b| b.angular_velocity)),
+        real("time", "s", "time", Sample(at!(time))),
+        real("position_x", "m", "x of the mass centre, fixed frame", Body(at!(position[0]))).compared(Q::Position).drawn(Smooth),
+        real("position_y", "m", "y of the mass centre, fixed frame", Body(at!(position[1]))).compared(Q::Position).drawn(Smooth),
+        real("angle", "rad", "angle of the body, not wrapped", Body(at!(angle))).compared(Q::Angle).drawn(Smooth),
+        real("velocity_x", "m/s", "x of the mass centre's velocity", Body(at!(velocity[0]))).compared(Q::Velocity),
+        real("velocity_y", "m/s", "y of the mass centre's velocity", Body(at!(velocity[1]))).compared(Q::Velocity),
+        real("angular_velocity", "rad/s", "angular rate of the body", Body(at!(angular_velocity))).compared(Q::AngularRate).drawn(Smooth),
         real(
             "acceleration_x",
             "m/s^2",
             "x of the mass centre's acceleration",
-            Body(|b| b.acceleration[0]),
+            Body(at!(acceleration[0])),
         ),
         real(
             "acceleration_y",
             "m/s^2",
             "y of the mass centre's acceleration",
-            Body(|b| b.acceleration[1]),
+            Body(at!(acceleration[1])),
         ),
         real(
             "angular_acceleration",
             "rad/s^2",
             "angular acceleration of the body",
-            Body(|b| b.angular_acceleration),
-        ),
+            Body(at!(angular_acceleration)),
+        ).drawn(Extremes),
         real(
             "clearance_x",
             "m",
             "x of the journal centre minus the bearing centre, fixed frame",
-            Clearance(|c| c.offset[0]),
-        ),
+            Clearance(at!(offset[0])),
+        ).compared(Q::Clearance).drawn(Smooth),
         real(
             "clearance_y",
             "m",
             "y of the journal centre minus the bearing centre, fixed frame",
-            Clearance(|c| c.offset[1]),
-        ),
+            Clearance(at!(offset[1])),
+        ).compared(Q::Clearance).drawn(Smooth),
         real(
             "eccentricity",
             "m",
             "distance of the journal centre from the bearing centre",
-            Clearance(|c| c.eccentricity),
+            Clearance(at!(eccentricity)),
         ),
         real(
             "penetration",
             "m",
             "eccentricity minus radial clearance; negative in flight",
-            Clearance(|c| c.penetration),
-        ),
+            Clearance(at!(penetration)),
+        ).drawn(Extremes),
         real(
             "penetration_rate",
             "m/s",
             "rate of the penetration",
-            Clearance(|c| c.penetration_rate),
+            Clearance(at!(penetration_rate)),
         ),
         real(
             "slip_velocity",
             "m/s",
             "velocity along t of the journal's contact point relative to the bearing's",
-            Clearance(|c| c.slip_velocity),
+            Clearance(at!(slip_velocity)),
         ),
         real(
             "normal_force",
             "N",
             "normal force, which pushes the journal along -n",
-            Clearance(|c| c.normal_force),
-        ),
+            Clearance(at!(normal_force)),
+        ).compared(Q::Force).drawn(Extremes),
         real(
             "tangential_force",
             "N",
             "tangential force on the journal, along t",
-            Clearance(|c| c.tangential_force),
-        ),
+            Clearance(at!(tangential_force)),
+        ).compared(Q::Force).drawn(Extremes),
         flag(
             "in_contact",
             "whether the journal touches the bearing",
             &["flight", "contact"],
-            Clearance(|c| if c.in_contact { 1.0 } else { 0.0 }),
+            Clearance(Place {
+                get: |c| if c.in_contact { 1.0 } else { 0.0 },
+                put: |c, value| c.in_contact = value != 0.0,
+            }),
         ),
         real(
             "joint_force_x",
             "N",
             "x of the joint's force on its second body",
-            Joint(|j| j.force[0]),
-        ),
+            Joint(at!(force[0])),
+        ).compared(Q::Force).drawn(Extremes),
         real(
             "joint_force_y",
             "N",
             "y of the joint's force on its second body",
-            Joint(|j| j.force[1]),
-        ),
-        real("joint_moment", "N m", "moment of the joint on its second body", Joint(|j| j.moment)),
-        real("drive_torque", "N m", "torque of the drive on the second body of its joint", Drive),
-        real("energy_kinetic", "J", "kinetic energy", Sample(|o| o.energy.kinetic)),
+            Joint(at!(force[1])),
+        ).compared(Q::Force).drawn(Extremes),
+        real("joint_moment", "N m", "moment of the joint on its second body", Joint(at!(moment))).compared(Q::Moment).drawn(Extremes),
+        real("drive_torque", "N m", "torque of the drive on the second body of its joint", Drive).compared(Q::Torque).drawn(Extremes),
+        real("energy_kinetic", "J", "kinetic energy", Sample(at!(energy.kinetic))).drawn(Extremes),
         real(
             "energy_potential",
             "J",
             "potential energy of gravity and springs",
-            Sample(|o| o.energy.potential),
-        ),
-        real("energy_elastic", "J", "energy stored in contacts", Sample(|o| o.energy.elastic)),
+            Sample(at!(energy.potential)),
+        ).drawn(Extremes),
+        real("energy_elastic", "J", "energy stored in contacts", Sample(at!(energy.elastic))).drawn(Smooth),
         real(
             "energy_dissipated",
             "J",
             "energy dissipated since the start by contact damping, friction and dampers",
-            Sample(|o| o.energy.dissipated),
-        ),
+            Sample(at!(energy.dissipated)),
+        ).drawn(Smooth),
         real(
             "drive_work",
             "J",
             "work of the drives since the start",
-            Sample(|o| o.energy.drive_work),
-        ),
+            Sample(at!(energy.drive_work)),
+        ).drawn(Smooth),
         real(
             "load_work",
             "J",
             "work of applied forces and torques since the start",
-            Sample(|o| o.energy.load_work),
-        ),
+            Sample(at!(energy.load_work)),
+        ).drawn(Smooth),
         real(
             "energy_residual",
             "J",
             "what the energy balance is off by",
-            Sample(|o| o.energy.residual),
-        ),
-        real("event_time", "s", "time of the event", Event(|e| e.time)),
-        index("event_clearance", "index of the event's clearance", Event(|e| e.clearance as f64)),
+            Sample(at!(energy.residual)),
+        ).drawn(Extremes),
+        real("event_time", "s", "time of the event", Event(at!(time))),
+        index("event_clearance", "index of the event's clearance", Event(at_index!(clearance))),
         flag(
             "event_kind",
             "kind of the event",
-            &["contact_begins", "contact_ends", "friction_kink", "tension_begins_or_ends"],
-            Event(|e| f64::from(e.kind as u8)),
+            &EventKind::WORDS,
+            Event(Place {
+                get: |e| f64::from(e.kind as u8),
+                put: |e, value| e.kind = EventKind::ALL[value as usize],
+            }),
         ),
         real(
             "event_rate",
             "m/s",
             "penetration rate at the event; slip velocity at a friction kink",
-            Event(|e| e.rate),
+            Event(at!(rate)),
         ),
         index(
             "contact_clearance",
             "index of the contact's clearance",
-            Contact(|c| c.clearance as f64),
+            Contact(at_index!(clearance)),
         ),
-        real("contact_begin", "s", "begin of the contact", Contact(|c| c.begin)),
-        real("contact_end", "s", "end of the contact; NaN while open", Contact(|c| c.end)),
+        real("contact_begin", "s", "begin of the contact", Contact(at!(begin))),
+        real("contact_end", "s", "end of the contact; NaN while open", Contact(at!(end))),
         real(
             "contact_impact_rate",
             "m/s",
             "penetration rate at the begin of the contact",
-            Contact(|c| c.impact_rate),
+            Contact(at!(impact_rate)),
         ),
         real(
             "contact_peak_penetration",
             "m",
             "largest penetration of the contact",
-            Contact(|c| c.peak_penetration),
+            Contact(at!(peak_penetration)),
         ),
         real(
             "contact_peak_penetration_time",
             "s",
             "time of the contact's largest penetration",
-            Contact(|c| c.peak_penetration_time),
+            Contact(at!(peak_penetration_time)),
         ),
         real(
             "contact_peak_force",
             "N",
             "largest normal force of the contact",
-            Contact(|c| c.peak_force),
+            Contact(at!(peak_force)),
         ),
         real(
             "contact_peak_time",
             "s",
             "time of the contact's largest normal force",
-            Contact(|c| c.peak_time),
+            Contact(at!(peak_time)),
         ),
         real(
             "contact_dissipated",
             "J",
             "energy dissipated in the contact by damping and friction",
-            Contact(|c| c.dissipated),
+            Contact(at!(dissipated)),
         ),
-        real("peak_time", "s", "time of the local maximum of a normal force", Peak(|p| p.time)),
-        index("peak_clearance", "index of the peak's clearance", Peak(|p| p.clearance as f64)),
-        real("peak_force", "N", "normal force at its local maximum", Peak(|p| p.force)),
-        real("revolution_begin", "s", "begin of the revolution", Revolution(|r| r.begin)),
-        real("revolution_end", "s", "end of the revolution or of the run", Revolution(|r| r.end)),
+        real("peak_time", "s", "time of the local maximum of a normal force", Peak(at!(time))),
+        index("peak_clearance", "index of the peak's clearance", Peak(at_index!(clearance))),
+        real("peak_force", "N", "normal force at its local maximum", Peak(at!(force))),
+        real("revolution_begin", "s", "begin of the revolution", Revolution(at!(begin))),
+        real("revolution_end", "s", "end of the revolution or of the run", Revolution(at!(end))),
         extreme(
             "acceleration_x_largest",
             "m/s^2",
@@ -626,7 +752,6 @@ pub static DATASETS: [Dataset; 74] = {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::run::EventKind;
     use std::collections::HashSet;
 
     #[test]
@@ -637,22 +762,6 @@ mod tests {
             assert!(!dataset.unit.is_empty() && !dataset.long_name.is_empty(), "{}", dataset.name);
             let texts = [dataset.name, dataset.unit, dataset.long_name];
             assert!(texts.iter().all(|text| text.is_ascii()), "{}", dataset.name);
-        }
-    }
-
-    #[test]
-    fn the_meanings_of_event_kinds_stand_in_the_order_of_their_numbers() {
-        let Some(Values::Flag(meanings)) = Dataset::find("event_kind").map(|kind| kind.values)
-        else {
-            panic!("event_kind is a flag");
-        };
-        for (kind, meaning) in [
-            (EventKind::ContactBegins, "contact_begins"),
-            (EventKind::ContactEnds, "contact_ends"),
-            (EventKind::FrictionKink, "friction_kink"),
-            (EventKind::Tension, "tension_begins_or_ends"),
-        ] {
-            assert_eq!(meanings[kind as usize], meaning);
         }
     }
 }

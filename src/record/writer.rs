@@ -285,10 +285,10 @@ impl Recorder for Writer {
         assert!(widths == self.widths, "an observation has the lists that the header names");
         for (dataset, column) in datasets_of(Dimension::Time).zip(&mut self.samples.columns) {
             match dataset.source {
-                Source::Sample(value) => column.push(value(observation)),
-                Source::Body(value) => column.extend(observation.bodies.iter().map(value)),
-                Source::Clearance(value) => column.extend(observation.clearances.iter().map(value)),
-                Source::Joint(value) => column.extend(observation.joints.iter().map(value)),
+                Source::Sample(place) => column.push((place.get)(observation)),
+                Source::Body(place) => column.extend(observation.bodies.iter().map(place.get)),
+                Source::Clearance(place) => column.extend(observation.clearances.iter().map(place.get)),
+                Source::Joint(place) => column.extend(observation.joints.iter().map(place.get)),
                 Source::Drive => column.extend(&observation.drive_torques),
                 Source::Event(_)
                 | Source::Contact(_)
@@ -302,8 +302,8 @@ impl Recorder for Writer {
 
     fn event(&mut self, event: Event) -> Result<(), Error> {
         for (dataset, column) in datasets_of(Dimension::Event).zip(&mut self.events.columns) {
-            if let Source::Event(value) = dataset.source {
-                column.push(value(&event));
+            if let Source::Event(place) = dataset.source {
+                column.push((place.get)(&event));
             }
         }
         self.count(Dimension::Event, 1)
@@ -311,8 +311,8 @@ impl Recorder for Writer {
 
     fn contact(&mut self, contact: Contact) -> Result<(), Error> {
         for (dataset, column) in datasets_of(Dimension::Contact).zip(&mut self.contacts.columns) {
-            if let Source::Contact(value) = dataset.source {
-                column.push(value(&contact));
+            if let Source::Contact(place) = dataset.source {
+                column.push((place.get)(&contact));
             }
         }
         self.count(Dimension::Contact, 1)
@@ -320,8 +320,8 @@ impl Recorder for Writer {
 
     fn peak(&mut self, peak: Peak) -> Result<(), Error> {
         for (dataset, column) in datasets_of(Dimension::Peak).zip(&mut self.peaks.columns) {
-            if let Source::Peak(value) = dataset.source {
-                column.push(value(&peak));
+            if let Source::Peak(place) = dataset.source {
+                column.push((place.get)(&peak));
             }
         }
         self.count(Dimension::Peak, 1)
@@ -339,7 +339,7 @@ impl Recorder for Writer {
                 Part::Time => |extremum: Extremum| extremum.time,
             };
             match dataset.source {
-                Source::Revolution(value) => column.push(value(revolution)),
+                Source::Revolution(place) => column.push((place.get)(revolution)),
                 Source::Extreme(measure, Side::Largest, of) => {
                     column.extend(revolution.largest(measure).map(part(of)));
                 }

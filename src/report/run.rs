@@ -6,35 +6,15 @@ use super::pack::{Packed, TIME_DIGITS, VALUE_DIGITS, pack};
 use super::thin::rows_to_keep;
 use crate::case::Case;
 use crate::certify::Horizon;
-use crate::record::{self, ResultFile, Table, column_name};
+use crate::record::{self, DATASETS, Dataset, Drawn, ResultFile, Table, column_name};
 use crate::run::Contact;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// Datasets over time that the page draws, and whether their extremes must survive thinning.
-const OVER_TIME: [(&str, bool); 21] = [
-    ("position_x", false),
-    ("position_y", false),
-    ("angle", false),
-    ("angular_velocity", false),
-    ("angular_acceleration", true),
-    ("clearance_x", false),
-    ("clearance_y", false),
-    ("penetration", true),
-    ("normal_force", true),
-    ("tangential_force", true),
-    ("joint_force_x", true),
-    ("joint_force_y", true),
-    ("joint_moment", true),
-    ("drive_torque", true),
-    ("energy_kinetic", true),
-    ("energy_potential", true),
-    ("energy_elastic", false),
-    ("energy_dissipated", false),
-    ("drive_work", false),
-    ("load_work", false),
-    ("energy_residual", true),
-];
+/// Datasets over time that the page draws.
+fn drawn() -> impl Iterator<Item = &'static Dataset> {
+    DATASETS.iter().filter(|dataset| dataset.drawn != Drawn::No)
+}
 
 /// Datasets of contacts and peaks, and whether they are times.
 const OF_CONTACTS: [(&str, bool); 10] = [
@@ -93,9 +73,9 @@ impl<'a> Run<'a> {
     /// Reads what the page needs.
     pub fn read(file: &'a ResultFile, label: String) -> Result<Self, record::Error> {
         let mut tables = BTreeMap::new();
-        for (name, _) in OVER_TIME {
-            match file.table(name) {
-                Ok(table) => tables.insert(name, table),
+        for dataset in drawn() {
+            match file.table(dataset.name) {
+                Ok(table) => tables.insert(dataset.name, table),
                 Err(record::Error::Missing { .. }) => None,
                 Err(error) => return Err(error),
             };
@@ -199,8 +179,8 @@ impl<'a> Run<'a> {
         if self.times.len() <= most {
             return (0..self.times.len()).collect();
         }
-        let extremes = OVER_TIME.iter().filter(|(_, extremes)| *extremes);
-        let tables = extremes.filter_map(|(name, _)| self.table(name));
+        let extremes = drawn().filter(|dataset| dataset.drawn == Drawn::Extremes);
+        let tables = extremes.filter_map(|dataset| self.table(dataset.name));
         let columns: Vec<Vec<f64>> =
             tables.flat_map(|table| (0..table.width).map(|item| table.column(item))).collect();
         let columns: Vec<&[f64]> = columns.iter().map(Vec::as_slice).collect();

@@ -7,9 +7,10 @@ use std::error::Error;
 use std::ops::ControlFlow;
 
 /// Kinds of event; the number is that of result files.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum EventKind {
     /// A contact begins.
+    #[default]
     ContactBegins = 0,
     /// A contact ends.
     ContactEnds = 1,
@@ -19,8 +20,49 @@ pub enum EventKind {
     Tension = 3,
 }
 
+impl EventKind {
+    /// All, in the order of their numbers.
+    pub const ALL: [EventKind; 4] = [
+        EventKind::ContactBegins,
+        EventKind::ContactEnds,
+        EventKind::FrictionKink,
+        EventKind::Tension,
+    ];
+
+    /// Their names in result files and tables, in that order.
+    pub const WORDS: [&'static str; 4] = {
+        let mut words = [""; 4];
+        let mut number = 0;
+        while number < words.len() {
+            words[number] = EventKind::ALL[number].word();
+            number += 1;
+        }
+        words
+    };
+
+    /// Its name in result files and tables.
+    pub const fn word(self) -> &'static str {
+        match self {
+            EventKind::ContactBegins => "contact_begins",
+            EventKind::ContactEnds => "contact_ends",
+            EventKind::FrictionKink => "friction_kink",
+            EventKind::Tension => "tension_begins_or_ends",
+        }
+    }
+
+    /// What happens, in a sentence.
+    pub const fn sentence(self) -> &'static str {
+        match self {
+            EventKind::ContactBegins => "a contact begins",
+            EventKind::ContactEnds => "a contact ends",
+            EventKind::FrictionKink => "the slip passes an edge of friction",
+            EventKind::Tension => "tension begins or ends",
+        }
+    }
+}
+
 /// One event.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Event {
     /// Time (s).
     pub time: f64,
@@ -34,7 +76,7 @@ pub struct Event {
 
 /// One contact, from its begin to its end, or to the end of the run while it is open. Penetration
 /// and force are true extrema.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Contact {
     /// Index of the clearance.
     pub clearance: usize,
@@ -65,7 +107,7 @@ pub struct Contact {
 }
 
 /// A local maximum of a normal force.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Peak {
     /// Time (s).
     #[serde(with = "bits")]

@@ -1,23 +1,11 @@
 //! Section points: the mechanism whenever a drive passes an angle.
 
 use super::plan::SectionPlan;
+use crate::compare::{Column, Part, Parts};
 use crate::course::Course;
-use crate::mechanism::{Mechanism, Observation};
+use crate::mechanism::Mechanism;
 use crate::model::{Model, did_you_mean};
-use crate::record::{DATASETS, Dataset, Source, column_name};
 use std::f64::consts::TAU;
-
-/// Datasets whose columns are the state, for bodies and for joints with clearance.
-const STATE: [&str; 8] = [
-    "position_x",
-    "position_y",
-    "angle",
-    "velocity_x",
-    "velocity_y",
-    "angular_velocity",
-    "clearance_x",
-    "clearance_y",
-];
 
 /// What of section points is kept, and where they lie.
 #[derive(Debug, Clone)]
@@ -28,29 +16,13 @@ pub(super) struct Section {
     angle: f64,
 }
 
-/// A column.
+/// A column, and its name in result files.
 #[derive(Debug, Clone)]
 pub(super) struct SectionColumn {
     /// Its name.
     pub name: String,
-    /// What it is in a result file.
-    pub dataset: &'static Dataset,
-    item: usize,
-}
-
-impl SectionColumn {
-    /// Its value.
-    pub fn of(&self, observation: &Observation) -> f64 {
-        let k = self.item;
-        match self.dataset.source {
-            Source::Sample(of) => of(observation),
-            Source::Body(of) => of(&observation.bodies[k]),
-            Source::Clearance(of) => of(&observation.clearances[k]),
-            Source::Joint(of) => of(&observation.joints[k]),
-            Source::Drive => observation.drive_torques[k],
-            _ => f64::NAN,
-        }
-    }
+    /// The column.
+    pub column: Column,
 }
 
 impl Section {
@@ -76,8 +48,7 @@ impl Section {
         let all = columns(model);
         let columns = match &plan.columns {
             None => {
-                let state = |column: &SectionColumn| STATE.contains(&column.dataset.name);
-                all.into_iter().filter(state).collect()
+                all.into_iter().filter(|column| is_state(&column.column)).collect()
             }
             Some(names) => names
                 .iter()
@@ -116,30 +87,16 @@ impl Section {
     }
 }
 
+/// Whether a column is one of the state.
+fn is_state(column: &Column) -> bool {
+    column.quantity().is_some_and(|quantity| quantity.part() != Part::Forces)
+}
+
 /// Columns that a sample has.
 fn columns(model: &Model<f64>) -> Vec<SectionColumn> {
-    let names = model.names();
-    let mut all = Vec::new();
-    for dataset in &DATASETS {
-        let items: &[String] = match dataset.source {
-            Source::Sample(_) if dataset.name != "time" => &[],
-            Source::Body(_) => &names.bodies,
-            Source::Clearance(_) => &names.clearances,
-            Source::Joint(_) => &names.joints,
-            Source::Drive => &names.drives,
-            _ => continue,
-        };
-        let column = |item: Option<&String>, k| SectionColumn {
-            name: column_name(dataset.name, item.map(String::as_str)),
-            dataset,
-            item: k,
-        };
-        match dataset.source {
-            Source::Sample(_) => all.push(column(None, 0)),
-            _ => all.extend(items.iter().enumerate().map(|(k, item)| column(Some(item), k))),
-        }
-    }
-    all
+    let parts = Parts(model.names().clone());
+    let named = |column: Column| SectionColumn { name: parts.name(&column), column };
+    parts.columns().into_iter().map(named).collect()
 }
 
 /// Times from 0 to `end` (s) at which a course passes an angle (rad) or the same a number of turns
