@@ -3,7 +3,7 @@
 use super::Certificate;
 use crate::digits::{MOST_DIGITS, Parting, digits};
 use crate::model::Names;
-use crate::run::{Event, EventKind};
+use crate::run::Event;
 use std::fmt::{self, Write};
 
 /// Digits for which the time is told up to which a run holds them.

@@ -122,8 +122,8 @@ impl<S: Scalar> Clearance<S> {
                 let within = self.inner_edge(contact, edge, rates.slip, inner);
                 let Some(within) = within else { return 0.0 };
                 let remembered = within.d_inner.iter().zip(inner);
-                let remembered = remembered
-                    .fold(S::zero(), |sum, (slope, state)| sum + (*slope * state).abs());
+                let remembered =
+                    remembered.fold(S::zero(), |sum, (slope, state)| sum + (*slope * state).abs());
                 return (speed * within.d_slip.abs() + remembered).to_f64();
             }
             (_, _, Some(friction)) => S::one() / friction.slip_scale(),

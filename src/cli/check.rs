@@ -402,7 +402,11 @@ fn mechanism_lines(
     writeln!(
         f,
         "  freedoms     {freedoms}: {coordinates} coordinates, {rows} constraints{}",
-        if freedoms == 0 { "; assembled at each time, nothing is integrated" } else { "" }
+        if freedoms == 0 && mechanism.modes().is_empty() {
+            "; assembled at each time, nothing is integrated"
+        } else {
+            ""
+        }
     )
 }
 

@@ -109,6 +109,7 @@ friction = { law = "gonthier", coefficient = 0.1, static = 0.15, stiffness = 1e4
 const DWELL: u8 = 0;
 const FORWARD_FULL: u8 = 1;
 const BACKWARD_FULL: u8 = 2;
+const INNER_EDGES: u8 = 3;
 
 /// What a branch is: a number with three digits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -296,7 +297,7 @@ impl<S: Scalar> FrictionLaw<S> for Gonthier<S> {
     }
 
     fn inner_edges(&self) -> u8 {
-        3
+        INNER_EDGES
     }
 
     fn inner_edge(&self, branch: Branch, edge: u8, slip: S, inner: Inner<S>) -> Option<Sloped<S>> {
@@ -317,11 +318,12 @@ impl<S: Scalar> FrictionLaw<S> for Gonthier<S> {
                 2 => self.room(region, slip, inner, S::one()).negative(),
                 _ => return None,
             },
-            _ => match full {
+            BACKWARD_FULL => match full {
                 1 => self.room(region, slip, inner, -S::one()),
                 0 => self.room(region, slip, inner, -S::one()).negative(),
                 _ => return None,
             },
+            _ => return None,
         };
         let overlap = self.overlap(slip, inner[1]);
         Some(Sloped {

@@ -8,8 +8,8 @@
 //! y = (q, v, z, λ); the Jacobian is ∂r/∂y + c_j ∂r/∂ẏ. It is tested against dual numbers, column by
 //! column.
 
-use super::{Mechanism, inner_states};
 use super::layout::Role;
+use super::{Mechanism, inner_states};
 use crate::clearance::Mode;
 use crate::dae::{Dae, Entries, Fault, State};
 use crate::plane::{Motion, Vector, Wrench};

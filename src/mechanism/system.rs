@@ -1,7 +1,7 @@
 //! The mechanism as every engine sees it.
 
-use super::{Mechanism, inner_states};
 use super::layout::Role;
+use super::{Mechanism, inner_states};
 use crate::clearance::{Bodies, Clearance, Gap, Mode};
 use crate::contact::Penetration;
 use crate::dae::{Course, Fault, State, System, Watch};

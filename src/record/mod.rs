@@ -29,7 +29,8 @@ pub use overview::Overview;
 pub(crate) use publish::{Draft, abandon_drafts};
 pub use reader::{ResultFile, Table};
 pub use schema::{
-    DATASETS, Dataset, Dimension, Drawn, Place, Quantity, SCHEMA_VERSION, Source, Values, column_name,
+    DATASETS, Dataset, Dimension, Drawn, Place, Quantity, SCHEMA_VERSION, Source, Values,
+    column_name,
 };
 pub use seal::{Seal, sha256};
 pub(crate) use segments::program;

@@ -346,12 +346,22 @@ pub static DATASETS: [Dataset; 74] = {
     use Source::{Body, Clearance, Contact, Drive, Event, Joint, Peak, Revolution, Sample};
     [
         real("time", "s", "time", Sample(at!(time))),
-        real("position_x", "m", "x of the mass centre, fixed frame", Body(at!(position[0]))).compared(Q::Position).drawn(Smooth),
-        real("position_y", "m", "y of the mass centre, fixed frame", Body(at!(position[1]))).compared(Q::Position).drawn(Smooth),
-        real("angle", "rad", "angle of the body, not wrapped", Body(at!(angle))).compared(Q::Angle).drawn(Smooth),
-        real("velocity_x", "m/s", "x of the mass centre's velocity", Body(at!(velocity[0]))).compared(Q::Velocity),
-        real("velocity_y", "m/s", "y of the mass centre's velocity", Body(at!(velocity[1]))).compared(Q::Velocity),
-        real("angular_velocity", "rad/s", "angular rate of the body", Body(at!(angular_velocity))).compared(Q::AngularRate).drawn(Smooth),
+        real("position_x", "m", "x of the mass centre, fixed frame", Body(at!(position[0])))
+            .compared(Q::Position)
+            .drawn(Smooth),
+        real("position_y", "m", "y of the mass centre, fixed frame", Body(at!(position[1])))
+            .compared(Q::Position)
+            .drawn(Smooth),
+        real("angle", "rad", "angle of the body, not wrapped", Body(at!(angle)))
+            .compared(Q::Angle)
+            .drawn(Smooth),
+        real("velocity_x", "m/s", "x of the mass centre's velocity", Body(at!(velocity[0])))
+            .compared(Q::Velocity),
+        real("velocity_y", "m/s", "y of the mass centre's velocity", Body(at!(velocity[1])))
+            .compared(Q::Velocity),
+        real("angular_velocity", "rad/s", "angular rate of the body", Body(at!(angular_velocity)))
+            .compared(Q::AngularRate)
+            .drawn(Smooth),
         real(
             "acceleration_x",
             "m/s^2",
@@ -369,19 +379,24 @@ pub static DATASETS: [Dataset; 74] = {
             "rad/s^2",
             "angular acceleration of the body",
             Body(at!(angular_acceleration)),
-        ).drawn(Extremes),
+        )
+        .drawn(Extremes),
         real(
             "clearance_x",
             "m",
             "x of the journal centre minus the bearing centre, fixed frame",
             Clearance(at!(offset[0])),
-        ).compared(Q::Clearance).drawn(Smooth),
+        )
+        .compared(Q::Clearance)
+        .drawn(Smooth),
         real(
             "clearance_y",
             "m",
             "y of the journal centre minus the bearing centre, fixed frame",
             Clearance(at!(offset[1])),
-        ).compared(Q::Clearance).drawn(Smooth),
+        )
+        .compared(Q::Clearance)
+        .drawn(Smooth),
         real(
             "eccentricity",
             "m",
@@ -393,7 +408,8 @@ pub static DATASETS: [Dataset; 74] = {
             "m",
             "eccentricity minus radial clearance; negative in flight",
             Clearance(at!(penetration)),
-        ).drawn(Extremes),
+        )
+        .drawn(Extremes),
         real(
             "penetration_rate",
             "m/s",
@@ -411,13 +427,17 @@ pub static DATASETS: [Dataset; 74] = {
             "N",
             "normal force, which pushes the journal along -n",
             Clearance(at!(normal_force)),
-        ).compared(Q::Force).drawn(Extremes),
+        )
+        .compared(Q::Force)
+        .drawn(Extremes),
         real(
             "tangential_force",
             "N",
             "tangential force on the journal, along t",
             Clearance(at!(tangential_force)),
-        ).compared(Q::Force).drawn(Extremes),
+        )
+        .compared(Q::Force)
+        .drawn(Extremes),
         flag(
             "in_contact",
             "whether the journal touches the bearing",
@@ -432,47 +452,61 @@ pub static DATASETS: [Dataset; 74] = {
             "N",
             "x of the joint's force on its second body",
             Joint(at!(force[0])),
-        ).compared(Q::Force).drawn(Extremes),
+        )
+        .compared(Q::Force)
+        .drawn(Extremes),
         real(
             "joint_force_y",
             "N",
             "y of the joint's force on its second body",
             Joint(at!(force[1])),
-        ).compared(Q::Force).drawn(Extremes),
-        real("joint_moment", "N m", "moment of the joint on its second body", Joint(at!(moment))).compared(Q::Moment).drawn(Extremes),
-        real("drive_torque", "N m", "torque of the drive on the second body of its joint", Drive).compared(Q::Torque).drawn(Extremes),
+        )
+        .compared(Q::Force)
+        .drawn(Extremes),
+        real("joint_moment", "N m", "moment of the joint on its second body", Joint(at!(moment)))
+            .compared(Q::Moment)
+            .drawn(Extremes),
+        real("drive_torque", "N m", "torque of the drive on the second body of its joint", Drive)
+            .compared(Q::Torque)
+            .drawn(Extremes),
         real("energy_kinetic", "J", "kinetic energy", Sample(at!(energy.kinetic))).drawn(Extremes),
         real(
             "energy_potential",
             "J",
             "potential energy of gravity and springs",
             Sample(at!(energy.potential)),
-        ).drawn(Extremes),
-        real("energy_elastic", "J", "energy stored in contacts", Sample(at!(energy.elastic))).drawn(Smooth),
+        )
+        .drawn(Extremes),
+        real("energy_elastic", "J", "energy stored in contacts", Sample(at!(energy.elastic)))
+            .drawn(Smooth),
         real(
             "energy_dissipated",
             "J",
             "energy dissipated since the start by contact damping, friction and dampers",
             Sample(at!(energy.dissipated)),
-        ).drawn(Smooth),
+        )
+        .drawn(Smooth),
         real(
             "drive_work",
             "J",
             "work of the drives since the start",
             Sample(at!(energy.drive_work)),
-        ).drawn(Smooth),
+        )
+        .drawn(Smooth),
         real(
             "load_work",
             "J",
             "work of applied forces and torques since the start",
             Sample(at!(energy.load_work)),
-        ).drawn(Smooth),
+        )
+        .drawn(Smooth),
         real(
             "energy_residual",
             "J",
             "what the energy balance is off by",
             Sample(at!(energy.residual)),
-        ).drawn(Extremes),
+        )
+        .drawn(Extremes),
         real("event_time", "s", "time of the event", Event(at!(time))),
         index("event_clearance", "index of the event's clearance", Event(at_index!(clearance))),
         flag(

@@ -287,7 +287,9 @@ impl Recorder for Writer {
             match dataset.source {
                 Source::Sample(place) => column.push((place.get)(observation)),
                 Source::Body(place) => column.extend(observation.bodies.iter().map(place.get)),
-                Source::Clearance(place) => column.extend(observation.clearances.iter().map(place.get)),
+                Source::Clearance(place) => {
+                    column.extend(observation.clearances.iter().map(place.get))
+                }
                 Source::Joint(place) => column.extend(observation.joints.iter().map(place.get)),
                 Source::Drive => column.extend(&observation.drive_torques),
                 Source::Event(_)

@@ -591,7 +591,9 @@ where
         let (kind, rate) = match what {
             EventSlot::Depth if was_flight => (EventKind::ContactBegins, rate),
             EventSlot::Depth => (EventKind::ContactEnds, rate),
-            EventSlot::LowerEdge | EventSlot::UpperEdge | EventSlot::InnerEdge(_) => (EventKind::FrictionKink, slip),
+            EventSlot::LowerEdge | EventSlot::UpperEdge | EventSlot::InnerEdge(_) => {
+                (EventKind::FrictionKink, slip)
+            }
             EventSlot::Pull => (EventKind::Tension, rate),
         };
         self.progress.events += 1;

@@ -476,7 +476,8 @@ impl Recorder for Kept<'_> {
         if let Some(section) = self.runner.section.as_ref().filter(|_| of.section && behind) {
             let turned = self.period.map_or(0.0, |period| (time / period + ROUNDING).floor());
             self.sections.extend([turned, time]);
-            self.sections.extend(section.columns.iter().map(|column| column.column.value(observation)));
+            self.sections
+                .extend(section.columns.iter().map(|column| column.column.value(observation)));
         }
         Ok(())
     }

@@ -47,9 +47,7 @@ impl Section {
         };
         let all = columns(model);
         let columns = match &plan.columns {
-            None => {
-                all.into_iter().filter(|column| is_state(&column.column)).collect()
-            }
+            None => all.into_iter().filter(|column| is_state(&column.column)).collect(),
             Some(names) => names
                 .iter()
                 .map(|name| {

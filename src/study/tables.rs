@@ -196,7 +196,12 @@ fn fields(name: &str, study: &Study, runner: &Runner<'_>) -> Vec<Field> {
             fields.push(field("time", "s", "when the drive passes the angle", Holds::Real));
             let columns = runner.section.iter().flat_map(|section| &section.columns);
             fields.extend(columns.map(|column| {
-                field(&column.name, column.column.dataset.unit, column.column.dataset.long_name, Holds::Real)
+                field(
+                    &column.name,
+                    column.column.dataset.unit,
+                    column.column.dataset.long_name,
+                    Holds::Real,
+                )
             }));
         }
         _ => {
