@@ -39,6 +39,29 @@ pub struct Key {
     pub about: &'static str,
 }
 
+impl Key {
+    /// A key that must be there: its name, what its value is, the unit of its numbers, and what it
+    /// means.
+    pub const fn new(
+        name: &'static str,
+        takes: Takes,
+        unit: &'static str,
+        about: &'static str,
+    ) -> Key {
+        Key { name, takes, unit, otherwise: Otherwise::Required, about }
+    }
+
+    /// The same, with a value, as TOML has it, that holds where it is left out.
+    pub const fn or(self, value: &'static str) -> Key {
+        Key { otherwise: Otherwise::Default(value), ..self }
+    }
+
+    /// The same, which may be left out.
+    pub const fn optional(self) -> Key {
+        Key { otherwise: Otherwise::Absent, ..self }
+    }
+}
+
 /// What the value of a key is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Takes {

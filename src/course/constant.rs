@@ -1,7 +1,7 @@
 //! Constant: f(t) = value. A plain number in a case stands for it.
 
 use super::{Ends, Law};
-use crate::parameter::{Key, Kind, Otherwise, Range, Takes, Values};
+use crate::parameter::{Key, Kind, Range, Takes, Values};
 use crate::scalar::Scalar;
 
 /// The kind and its keys.
@@ -13,13 +13,7 @@ pub const KIND: Kind = Kind {
 kind = "torque"
 body = "crank"
 torque = { kind = "constant", value = 0.5 }   # or torque = 0.5"#,
-    keys: &[Key {
-        name: "value",
-        takes: Takes::Number(Range::Any),
-        unit: "",
-        otherwise: Otherwise::Required,
-        about: "the value",
-    }],
+    keys: &[Key::new("value", Takes::Number(Range::Any), "", "the value")],
     also: None,
 };
 

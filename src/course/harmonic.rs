@@ -4,7 +4,7 @@
 //! ```
 
 use super::{Ends, Law, Rate, turn};
-use crate::parameter::{Key, Kind, Otherwise, Range, Takes, Values};
+use crate::parameter::{Key, Kind, Range, Takes, Values};
 use crate::scalar::{Decimal, Scalar};
 
 /// The kind and its keys.
@@ -18,34 +18,10 @@ kind = "harmonic"
 amplitude = 0.2
 angular_frequency = 40.0"#,
     keys: &[
-        Key {
-            name: "mean",
-            takes: Takes::Number(Range::Any),
-            unit: "",
-            otherwise: Otherwise::Default("0.0"),
-            about: "mean value, in the unit of what swings (rad, m, N, N m)",
-        },
-        Key {
-            name: "amplitude",
-            takes: Takes::Number(Range::Any),
-            unit: "",
-            otherwise: Otherwise::Required,
-            about: "amplitude, in the same unit",
-        },
-        Key {
-            name: "angular_frequency",
-            takes: Takes::Number(Range::Any),
-            unit: "rad/s",
-            otherwise: Otherwise::Required,
-            about: "ω",
-        },
-        Key {
-            name: "phase",
-            takes: Takes::Number(Range::Any),
-            unit: "rad",
-            otherwise: Otherwise::Default("0.0"),
-            about: "phase at t = 0",
-        },
+        Key::new("mean", Takes::Number(Range::Any), "", "mean value, in the unit of what swings (rad, m, N, N m)").or("0.0"),
+        Key::new("amplitude", Takes::Number(Range::Any), "", "amplitude, in the same unit"),
+        Key::new("angular_frequency", Takes::Number(Range::Any), "rad/s", "ω"),
+        Key::new("phase", Takes::Number(Range::Any), "rad", "phase at t = 0").or("0.0"),
     ],
     also: None,
 };

@@ -1,7 +1,7 @@
 //! Courses: prescribed functions of time with two derivatives, in any arithmetic, one file a kind.
 //! Drives prescribe angles and travels by them, loads torques and forces.
 
-use crate::parameter::{Key, Kind, Otherwise, Range, Takes, Values, kinds};
+use crate::parameter::{Key, Kind, Range, Takes, Values, kinds};
 use crate::scalar::{Decimal, F256, Scalar};
 
 kinds! { $
@@ -175,31 +175,26 @@ fn turn(rate: f64) -> Option<f64> {
 }
 
 /// The keys of a course that goes at a speed: that of an angle, or that of a travel.
-const SPEED_RPM: Key = Key {
-    name: "speed_rpm",
-    takes: Takes::Number(Range::Any),
-    unit: "revolutions a minute",
-    otherwise: Otherwise::Absent,
-    about: "speed of an angle; a travel has `velocity`",
-};
-const ANGLE: Key = Key {
-    name: "angle",
-    takes: Takes::Number(Range::Any),
-    unit: "rad",
-    otherwise: Otherwise::Absent,
-    about: "angle at t = 0; zero where it is left out",
-};
-const VELOCITY: Key = Key {
-    name: "velocity",
-    takes: Takes::Number(Range::Any),
-    unit: "m/s",
-    otherwise: Otherwise::Absent,
-    about: "speed of a travel",
-};
-const POSITION: Key = Key {
-    name: "position",
-    takes: Takes::Number(Range::Any),
-    unit: "m",
-    otherwise: Otherwise::Absent,
-    about: "travel at t = 0; zero where it is left out",
-};
+const SPEED_RPM: Key = Key::new(
+    "speed_rpm",
+    Takes::Number(Range::Any),
+    "revolutions a minute",
+    "speed of an angle; a travel has `velocity`",
+)
+.optional();
+const ANGLE: Key = Key::new(
+    "angle",
+    Takes::Number(Range::Any),
+    "rad",
+    "angle at t = 0; zero where it is left out",
+)
+.optional();
+const VELOCITY: Key =
+    Key::new("velocity", Takes::Number(Range::Any), "m/s", "speed of a travel").optional();
+const POSITION: Key = Key::new(
+    "position",
+    Takes::Number(Range::Any),
+    "m",
+    "travel at t = 0; zero where it is left out",
+)
+.optional();

@@ -6,7 +6,7 @@
 //! Speed, acceleration and its rate are continuous; at T the engines begin anew.
 
 use super::{ANGLE, Ends, Law, POSITION, Rate, SPEED_RPM, VELOCITY, turn};
-use crate::parameter::{Key, Kind, Otherwise, Range, Takes, Values};
+use crate::parameter::{Key, Kind, Range, Takes, Values};
 use crate::scalar::Scalar;
 
 /// The kind and its keys.
@@ -24,13 +24,7 @@ time = 0.05"#,
         ANGLE,
         VELOCITY,
         POSITION,
-        Key {
-            name: "time",
-            takes: Takes::Number(Range::Positive),
-            unit: "s",
-            otherwise: Otherwise::Required,
-            about: "time from rest to the speed",
-        },
+        Key::new("time", Takes::Number(Range::Positive), "s", "time from rest to the speed"),
     ],
     also: None,
 };

@@ -4,7 +4,7 @@
 //! ```
 
 use super::{Ends, Law};
-use crate::parameter::{Key, Kind, Otherwise, Range, Takes, Values};
+use crate::parameter::{Key, Kind, Range, Takes, Values};
 use crate::scalar::Scalar;
 
 /// The kind and its keys.
@@ -16,13 +16,7 @@ pub const KIND: Kind = Kind {
 kind = "run-up"
 joint = "O"
 acceleration = 40.0"#,
-    keys: &[Key {
-        name: "acceleration",
-        takes: Takes::Number(Range::Any),
-        unit: "rad/s²",
-        otherwise: Otherwise::Required,
-        about: "α",
-    }],
+    keys: &[Key::new("acceleration", Takes::Number(Range::Any), "rad/s²", "α")],
     also: None,
 };
 

@@ -18,7 +18,7 @@
 
 use super::pieces::Pieces;
 use super::{Branch, COEFFICIENT, Ends, FrictionLaw, Inner, Sloped};
-use crate::parameter::{Key, Kind, Otherwise, Range, Takes, Values};
+use crate::parameter::{Key, Kind, Range, Takes, Values};
 use crate::scalar::Scalar;
 
 /// The kind and its keys.
@@ -30,20 +30,8 @@ pub const KIND: Kind = Kind {
 friction = { law = "ambrosio", coefficient = 0.1, v0 = 1e-3, v1 = 1e-2 }"#,
     keys: &[
         COEFFICIENT,
-        Key {
-            name: "v0",
-            takes: Takes::Number(Range::NotNegative),
-            unit: "m/s",
-            otherwise: Otherwise::Required,
-            about: "slip below which there is no friction",
-        },
-        Key {
-            name: "v1",
-            takes: Takes::Number(Range::Positive),
-            unit: "m/s",
-            otherwise: Otherwise::Required,
-            about: "slip above which friction is full",
-        },
+        Key::new("v0", Takes::Number(Range::NotNegative), "m/s", "slip below which there is no friction"),
+        Key::new("v1", Takes::Number(Range::Positive), "m/s", "slip above which friction is full"),
     ],
     also: Some(rises),
 };

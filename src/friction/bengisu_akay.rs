@@ -17,7 +17,7 @@
 
 use super::pieces::Pieces;
 use super::{Branch, COEFFICIENT, Ends, FrictionLaw, Inner, Sloped};
-use crate::parameter::{Key, Kind, Otherwise, Range, Takes, Values};
+use crate::parameter::{Key, Kind, Range, Takes, Values};
 use crate::scalar::Scalar;
 
 /// The kind and its keys.
@@ -29,27 +29,9 @@ pub const KIND: Kind = Kind {
 friction = { law = "bengisu-akay", coefficient = 0.1, static = 0.15, transition = 1e-3, decay = 50.0 }"#,
     keys: &[
         COEFFICIENT,
-        Key {
-            name: "static",
-            takes: Takes::Number(Range::NotNegative),
-            unit: "",
-            otherwise: Otherwise::Required,
-            about: "coefficient μ_s of rest, not less than `coefficient`",
-        },
-        Key {
-            name: "transition",
-            takes: Takes::Number(Range::Positive),
-            unit: "m/s",
-            otherwise: Otherwise::Required,
-            about: "slip v_0 of the peak",
-        },
-        Key {
-            name: "decay",
-            takes: Takes::Number(Range::Positive),
-            unit: "s/m",
-            otherwise: Otherwise::Required,
-            about: "ξ: beyond the peak friction falls to that of sliding over a slip of 1/ξ",
-        },
+        Key::new("static", Takes::Number(Range::NotNegative), "", "coefficient μ_s of rest, not less than `coefficient`"),
+        Key::new("transition", Takes::Number(Range::Positive), "m/s", "slip v_0 of the peak"),
+        Key::new("decay", Takes::Number(Range::Positive), "s/m", "ξ: beyond the peak friction falls to that of sliding over a slip of 1/ξ"),
     ],
     also: Some(super::rest_holds),
 };

@@ -13,7 +13,7 @@
 //! 11(5):054502, 2016, doi 10.1115/1.4033658; checked against a public code.)
 
 use super::{Branch, COEFFICIENT, Ends, FrictionLaw, Inner, Sloped, WHOLE, endless};
-use crate::parameter::{Key, Kind, Otherwise, Range, Takes, Values};
+use crate::parameter::{Key, Kind, Range, Takes, Values};
 use crate::scalar::Scalar;
 
 /// The kind and its keys.
@@ -25,20 +25,8 @@ pub const KIND: Kind = Kind {
 friction = { law = "brown-mcphee", coefficient = 0.1, static = 0.15, transition = 1e-3 }"#,
     keys: &[
         COEFFICIENT,
-        Key {
-            name: "static",
-            takes: Takes::Number(Range::NotNegative),
-            unit: "",
-            otherwise: Otherwise::Required,
-            about: "coefficient μ_s of rest, not less than `coefficient`",
-        },
-        Key {
-            name: "transition",
-            takes: Takes::Number(Range::Positive),
-            unit: "m/s",
-            otherwise: Otherwise::Required,
-            about: "slip v_t of the peak",
-        },
+        Key::new("static", Takes::Number(Range::NotNegative), "", "coefficient μ_s of rest, not less than `coefficient`"),
+        Key::new("transition", Takes::Number(Range::Positive), "m/s", "slip v_t of the peak"),
     ],
     also: Some(super::rest_holds),
 };

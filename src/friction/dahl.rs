@@ -31,7 +31,7 @@
 //! an energy of its own, and what is dissipated may fall while bristles spring back.
 
 use super::{Branch, COEFFICIENT, Ends, FrictionLaw, Inner, MOST_INNER, Sloped};
-use crate::parameter::{Key, Kind, Otherwise, Range, Takes, Values};
+use crate::parameter::{Key, Kind, Range, Takes, Values};
 use crate::scalar::Scalar;
 
 /// The kind and its keys.
@@ -43,13 +43,7 @@ pub const KIND: Kind = Kind {
 friction = { law = "dahl", coefficient = 0.1, stiffness = 1e4 }"#,
     keys: &[
         COEFFICIENT,
-        Key {
-            name: "stiffness",
-            takes: Takes::Number(Range::Positive),
-            unit: "1/m",
-            otherwise: Otherwise::Required,
-            about: "stiffness σ0 of the bristles over the normal force",
-        },
+        Key::new("stiffness", Takes::Number(Range::Positive), "1/m", "stiffness σ0 of the bristles over the normal force"),
     ],
     also: None,
 };

@@ -29,7 +29,7 @@
 //! before, and hold nothing.
 
 use super::{Branch, COEFFICIENT, Ends, FrictionLaw, Inner, MOST_INNER, Sloped, rest_holds};
-use crate::parameter::{Key, Kind, Otherwise, Range, Takes, Values};
+use crate::parameter::{Key, Kind, Range, Takes, Values};
 use crate::scalar::Scalar;
 
 /// The kind and its keys.
@@ -41,48 +41,12 @@ pub const KIND: Kind = Kind {
 friction = { law = "elasto-plastic", coefficient = 0.1, static = 0.15, stiffness = 1e4, damping = 10.0, stribeck = 1e-2, elastic_share = 0.7 }"#,
     keys: &[
         COEFFICIENT,
-        Key {
-            name: "static",
-            takes: Takes::Number(Range::NotNegative),
-            unit: "",
-            otherwise: Otherwise::Required,
-            about: "coefficient μ_s of rest, not less than `coefficient`",
-        },
-        Key {
-            name: "stiffness",
-            takes: Takes::Number(Range::Positive),
-            unit: "1/m",
-            otherwise: Otherwise::Required,
-            about: "stiffness σ0 of the bristles over the normal force",
-        },
-        Key {
-            name: "damping",
-            takes: Takes::Number(Range::NotNegative),
-            unit: "s/m",
-            otherwise: Otherwise::Default("0.0"),
-            about: "damping σ1 of the bristles over the normal force",
-        },
-        Key {
-            name: "viscous",
-            takes: Takes::Number(Range::NotNegative),
-            unit: "s/m",
-            otherwise: Otherwise::Default("0.0"),
-            about: "viscous friction σ2 over the normal force",
-        },
-        Key {
-            name: "stribeck",
-            takes: Takes::Number(Range::Positive),
-            unit: "m/s",
-            otherwise: Otherwise::Required,
-            about: "Stribeck's velocity v_s",
-        },
-        Key {
-            name: "elastic_share",
-            takes: Takes::Number(Range::Positive),
-            unit: "",
-            otherwise: Otherwise::Default("0.7"),
-            about: "share of the deflection μ_d/σ0 up to which bristles bend elastically, less than 1",
-        },
+        Key::new("static", Takes::Number(Range::NotNegative), "", "coefficient μ_s of rest, not less than `coefficient`"),
+        Key::new("stiffness", Takes::Number(Range::Positive), "1/m", "stiffness σ0 of the bristles over the normal force"),
+        Key::new("damping", Takes::Number(Range::NotNegative), "s/m", "damping σ1 of the bristles over the normal force").or("0.0"),
+        Key::new("viscous", Takes::Number(Range::NotNegative), "s/m", "viscous friction σ2 over the normal force").or("0.0"),
+        Key::new("stribeck", Takes::Number(Range::Positive), "m/s", "Stribeck's velocity v_s"),
+        Key::new("elastic_share", Takes::Number(Range::Positive), "", "share of the deflection μ_d/σ0 up to which bristles bend elastically, less than 1").or("0.7"),
     ],
     also: Some(breaks_away),
 };

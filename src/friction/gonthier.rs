@@ -39,7 +39,7 @@
 //! both go on with the slip, and hold nothing.
 
 use super::{Branch, COEFFICIENT, Ends, FrictionLaw, Inner, MOST_INNER, Sloped, rest_holds};
-use crate::parameter::{Key, Kind, Otherwise, Range, Takes, Values};
+use crate::parameter::{Key, Kind, Range, Takes, Values};
 use crate::scalar::Scalar;
 
 /// The kind and its keys.
@@ -51,55 +51,13 @@ pub const KIND: Kind = Kind {
 friction = { law = "gonthier", coefficient = 0.1, static = 0.15, stiffness = 1e4, damping = 10.0, stribeck = 1e-2, dwell_time = 1e-3, transition = 1e-2 }"#,
     keys: &[
         COEFFICIENT,
-        Key {
-            name: "static",
-            takes: Takes::Number(Range::NotNegative),
-            unit: "",
-            otherwise: Otherwise::Required,
-            about: "coefficient μ_s of rest after long rest, not less than `coefficient`",
-        },
-        Key {
-            name: "stiffness",
-            takes: Takes::Number(Range::Positive),
-            unit: "1/m",
-            otherwise: Otherwise::Required,
-            about: "stiffness σ0 of the bristles over the normal force",
-        },
-        Key {
-            name: "damping",
-            takes: Takes::Number(Range::Positive),
-            unit: "s/m",
-            otherwise: Otherwise::Required,
-            about: "damping σ1 of the bristles over the normal force",
-        },
-        Key {
-            name: "viscous",
-            takes: Takes::Number(Range::NotNegative),
-            unit: "s/m",
-            otherwise: Otherwise::Default("0.0"),
-            about: "viscous friction σ2 over the normal force",
-        },
-        Key {
-            name: "stribeck",
-            takes: Takes::Number(Range::Positive),
-            unit: "m/s",
-            otherwise: Otherwise::Required,
-            about: "Stribeck's velocity v_s, below which surfaces stick",
-        },
-        Key {
-            name: "dwell_time",
-            takes: Takes::Number(Range::Positive),
-            unit: "s",
-            otherwise: Otherwise::Required,
-            about: "time τ_d in which rest makes the contact stronger",
-        },
-        Key {
-            name: "transition",
-            takes: Takes::Number(Range::Positive),
-            unit: "m/s",
-            otherwise: Otherwise::Required,
-            about: "slip v_ε from which on the direction of sliding friction is that of the slip",
-        },
+        Key::new("static", Takes::Number(Range::NotNegative), "", "coefficient μ_s of rest after long rest, not less than `coefficient`"),
+        Key::new("stiffness", Takes::Number(Range::Positive), "1/m", "stiffness σ0 of the bristles over the normal force"),
+        Key::new("damping", Takes::Number(Range::Positive), "s/m", "damping σ1 of the bristles over the normal force"),
+        Key::new("viscous", Takes::Number(Range::NotNegative), "s/m", "viscous friction σ2 over the normal force").or("0.0"),
+        Key::new("stribeck", Takes::Number(Range::Positive), "m/s", "Stribeck's velocity v_s, below which surfaces stick"),
+        Key::new("dwell_time", Takes::Number(Range::Positive), "s", "time τ_d in which rest makes the contact stronger"),
+        Key::new("transition", Takes::Number(Range::Positive), "m/s", "slip v_ε from which on the direction of sliding friction is that of the slip"),
     ],
     also: Some(rest_holds),
 };

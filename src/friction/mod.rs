@@ -7,7 +7,7 @@
 //!
 //! A new law is a file here and its line in the list of kinds.
 
-use crate::parameter::{Key, Otherwise, Range, Takes, Values, kinds};
+use crate::parameter::{Key, Range, Takes, Values, kinds};
 use crate::scalar::Scalar;
 use serde::{Deserialize, Serialize};
 
@@ -255,13 +255,12 @@ fn bristle<S: Scalar>(law: &impl FrictionLaw<S>, at: (Branch, S, S)) -> [Sloped<
 }
 
 /// The key that all laws have.
-const COEFFICIENT: Key = Key {
-    name: "coefficient",
-    takes: Takes::Number(Range::NotNegative),
-    unit: "",
-    otherwise: Otherwise::Required,
-    about: "friction coefficient c_f of sliding; zero means no friction",
-};
+const COEFFICIENT: Key = Key::new(
+    "coefficient",
+    Takes::Number(Range::NotNegative),
+    "",
+    "friction coefficient c_f of sliding; zero means no friction",
+);
 
 /// Friction of rest is no less than that of sliding.
 fn rest_holds(values: &Values) -> Vec<(&'static str, String)> {
@@ -276,7 +275,7 @@ fn rest_holds(values: &Values) -> Vec<(&'static str, String)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::parameter::{Kind, Value};
+    use crate::parameter::{Kind, Otherwise, Value};
     use crate::scalar::Decimal;
     use toml_edit::DocumentMut;
 

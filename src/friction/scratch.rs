@@ -4,7 +4,7 @@
 //! ```
 
 use super::{Branch, COEFFICIENT, Ends, FrictionLaw, Inner, Sloped, WHOLE, endless};
-use crate::parameter::{Key, Kind, Otherwise, Range, Takes, Values};
+use crate::parameter::{Key, Kind, Range, Takes, Values};
 use crate::scalar::Scalar;
 
 /// The kind and its keys.
@@ -16,13 +16,7 @@ pub const KIND: Kind = Kind {
 friction = { law = "thick", coefficient = 0.1, slip = 1.0 }"#,
     keys: &[
         COEFFICIENT,
-        Key {
-            name: "slip",
-            takes: Takes::Number(Range::Positive),
-            unit: "m/s",
-            otherwise: Otherwise::Required,
-            about: "slip v_1 at which F_T/F_N is the coefficient",
-        },
+        Key::new("slip", Takes::Number(Range::Positive), "m/s", "slip v_1 at which F_T/F_N is the coefficient"),
     ],
     also: None,
 };

@@ -17,7 +17,7 @@
 //! against a public code, whose jump at zero is the tangent here.)
 
 use super::{Branch, COEFFICIENT, Ends, FrictionLaw, Inner, Sloped, WHOLE, endless};
-use crate::parameter::{Key, Kind, Otherwise, Range, Takes, Values};
+use crate::parameter::{Key, Kind, Range, Takes, Values};
 use crate::scalar::Scalar;
 
 /// The kind and its keys.
@@ -29,34 +29,10 @@ pub const KIND: Kind = Kind {
 friction = { law = "stribeck", coefficient = 0.1, static = 0.15, stribeck = 1e-2, transition = 1e-3 }"#,
     keys: &[
         COEFFICIENT,
-        Key {
-            name: "static",
-            takes: Takes::Number(Range::NotNegative),
-            unit: "",
-            otherwise: Otherwise::Required,
-            about: "coefficient μ_s of rest, not less than `coefficient`",
-        },
-        Key {
-            name: "stribeck",
-            takes: Takes::Number(Range::Positive),
-            unit: "m/s",
-            otherwise: Otherwise::Required,
-            about: "Stribeck's velocity v_s",
-        },
-        Key {
-            name: "transition",
-            takes: Takes::Number(Range::Positive),
-            unit: "m/s",
-            otherwise: Otherwise::Required,
-            about: "slip v_d of the transition through zero",
-        },
-        Key {
-            name: "viscous",
-            takes: Takes::Number(Range::NotNegative),
-            unit: "s/m",
-            otherwise: Otherwise::Default("0.0"),
-            about: "viscous friction f_v over the normal force",
-        },
+        Key::new("static", Takes::Number(Range::NotNegative), "", "coefficient μ_s of rest, not less than `coefficient`"),
+        Key::new("stribeck", Takes::Number(Range::Positive), "m/s", "Stribeck's velocity v_s"),
+        Key::new("transition", Takes::Number(Range::Positive), "m/s", "slip v_d of the transition through zero"),
+        Key::new("viscous", Takes::Number(Range::NotNegative), "s/m", "viscous friction f_v over the normal force").or("0.0"),
     ],
     also: Some(super::rest_holds),
 };

@@ -11,7 +11,7 @@
 //! use; checked against a public code.)
 
 use super::{Branch, COEFFICIENT, Ends, FrictionLaw, Inner, Sloped, WHOLE, endless};
-use crate::parameter::{Key, Kind, Otherwise, Range, Takes, Values};
+use crate::parameter::{Key, Kind, Range, Takes, Values};
 use crate::scalar::Scalar;
 
 /// The kind and its keys.
@@ -23,13 +23,7 @@ pub const KIND: Kind = Kind {
 friction = { law = "tanh", coefficient = 0.1, transition = 1e-3 }"#,
     keys: &[
         COEFFICIENT,
-        Key {
-            name: "transition",
-            takes: Takes::Number(Range::Positive),
-            unit: "m/s",
-            otherwise: Otherwise::Required,
-            about: "slip v_d of the transition: friction is 76 % of full there",
-        },
+        Key::new("transition", Takes::Number(Range::Positive), "m/s", "slip v_d of the transition: friction is 76 % of full there"),
     ],
     also: None,
 };

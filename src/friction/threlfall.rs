@@ -16,7 +16,7 @@
 
 use super::pieces::Pieces;
 use super::{Branch, COEFFICIENT, Ends, FrictionLaw, Inner, Sloped};
-use crate::parameter::{Key, Kind, Otherwise, Range, Takes, Values};
+use crate::parameter::{Key, Kind, Range, Takes, Values};
 use crate::scalar::Scalar;
 
 /// The kind and its keys.
@@ -28,13 +28,7 @@ pub const KIND: Kind = Kind {
 friction = { law = "threlfall", coefficient = 0.1, transition = 1e-3 }"#,
     keys: &[
         COEFFICIENT,
-        Key {
-            name: "transition",
-            takes: Takes::Number(Range::Positive),
-            unit: "m/s",
-            otherwise: Otherwise::Required,
-            about: "slip v_r from which on friction is constant, 95 % of full",
-        },
+        Key::new("transition", Takes::Number(Range::Positive), "m/s", "slip v_r from which on friction is constant, 95 % of full"),
     ],
     also: None,
 };

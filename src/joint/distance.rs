@@ -5,7 +5,7 @@
 //! Its multiplier (N) is the tension of the link.
 
 use super::{BETWEEN, Ends, Holonomic, MOST_BODIES, MOST_ROWS, Pair, between};
-use crate::parameter::{Key, Kind, Otherwise, Range, Takes, Values};
+use crate::parameter::{Key, Kind, Range, Takes, Values};
 use crate::plane::Pose;
 use crate::scalar::{Lift, Scalar};
 
@@ -20,13 +20,7 @@ between = ["a.P", "b.Q"]
 length = 0.1"#,
     keys: &[
         BETWEEN,
-        Key {
-            name: "length",
-            takes: Takes::Number(Range::Positive),
-            unit: "m",
-            otherwise: Otherwise::Required,
-            about: "distance of the two points",
-        },
+        Key::new("length", Takes::Number(Range::Positive), "m", "distance of the two points"),
     ],
     also: None,
 };

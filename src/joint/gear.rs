@@ -5,7 +5,7 @@
 //! with pinion i, wheel j, carrier c and the ratio ρ, negative for teeth outside.
 
 use super::{Ends, Holonomic, MOST_BODIES, MOST_ROWS};
-use crate::parameter::{Key, Kind, Otherwise, Range, Takes, Values};
+use crate::parameter::{Key, Kind, Range, Takes, Values};
 use crate::plane::Pose;
 use crate::scalar::{Lift, Scalar};
 
@@ -19,34 +19,10 @@ kind = "gear"
 between = ["pinion", "wheel"]
 ratio = -0.4"#,
     keys: &[
-        Key {
-            name: "between",
-            takes: Takes::Bodies,
-            unit: "",
-            otherwise: Otherwise::Required,
-            about: "the pinion and the wheel",
-        },
-        Key {
-            name: "carrier",
-            takes: Takes::Body,
-            unit: "",
-            otherwise: Otherwise::Default("\"ground\""),
-            about: "the body that both turn on",
-        },
-        Key {
-            name: "ratio",
-            takes: Takes::Number(Range::NotZero),
-            unit: "",
-            otherwise: Otherwise::Required,
-            about: "angle of the wheel over that of the pinion; negative for teeth outside",
-        },
-        Key {
-            name: "angle",
-            takes: Takes::Number(Range::Any),
-            unit: "rad",
-            otherwise: Otherwise::Default("0.0"),
-            about: "angle of the wheel on the carrier where the pinion's is zero",
-        },
+        Key::new("between", Takes::Bodies, "", "the pinion and the wheel"),
+        Key::new("carrier", Takes::Body, "", "the body that both turn on").or("\"ground\""),
+        Key::new("ratio", Takes::Number(Range::NotZero), "", "angle of the wheel over that of the pinion; negative for teeth outside"),
+        Key::new("angle", Takes::Number(Range::Any), "rad", "angle of the wheel on the carrier where the pinion's is zero").or("0.0"),
     ],
     also: None,
 };

@@ -16,7 +16,7 @@ pub use derived::Derived;
 pub(crate) use derived::seeded;
 pub use drive::{AngleDrive, Travel};
 
-use crate::parameter::{Key, Otherwise, Takes, Values, kinds};
+use crate::parameter::{Key, Takes, Values, kinds};
 use crate::plane::{Pose, Vector};
 use crate::scalar::{Lift, Scalar};
 
@@ -76,13 +76,8 @@ pub struct Ends<S> {
 }
 
 /// The key of a joint between two points.
-const BETWEEN: Key = Key {
-    name: "between",
-    takes: Takes::Points,
-    unit: "",
-    otherwise: Otherwise::Required,
-    about: "a point of the first body and one of the second",
-};
+const BETWEEN: Key =
+    Key::new("between", Takes::Points, "", "a point of the first body and one of the second");
 
 /// What a joint says of the bodies that it holds.
 pub trait Holonomic<S: Scalar>: Copy {

@@ -5,18 +5,12 @@
 //! ```
 
 use super::{BETWEEN, Ends, Holonomic, MOST_BODIES, MOST_ROWS, Pair, between, lift, unit};
-use crate::parameter::{Key, Kind, Otherwise, Range, Takes, Values};
+use crate::parameter::{Key, Kind, Range, Takes, Values};
 use crate::plane::{Pose, Vector};
 use crate::scalar::{Lift, Scalar};
 
 /// The key of the line that a point slides on.
-pub(super) const AXIS: Key = Key {
-    name: "axis",
-    takes: Takes::Vector(Range::Positive),
-    unit: "",
-    otherwise: Otherwise::Required,
-    about: "direction of the line, in the first body's frame",
-};
+pub(super) const AXIS: Key = Key::new("axis", Takes::Vector(Range::Positive), "", "direction of the line, in the first body's frame");
 
 /// The kind and its keys.
 pub const KIND: Kind = Kind {
@@ -30,13 +24,7 @@ axis = [1.0, 0.0]"#,
     keys: &[
         BETWEEN,
         AXIS,
-        Key {
-            name: "angle",
-            takes: Takes::Number(Range::Any),
-            unit: "rad",
-            otherwise: Otherwise::Default("0.0"),
-            about: "angle of the second body relative to the first",
-        },
+        Key::new("angle", Takes::Number(Range::Any), "rad", "angle of the second body relative to the first").or("0.0"),
     ],
     also: None,
 };

@@ -4,7 +4,7 @@
 //! ```
 
 use super::{BETWEEN, Ends, Holonomic, MOST_BODIES, MOST_ROWS};
-use crate::parameter::{Key, Kind, Otherwise, Range, Takes, Values};
+use crate::parameter::{Key, Kind, Range, Takes, Values};
 use crate::plane::Pose;
 use crate::scalar::{Lift, Scalar};
 
@@ -18,13 +18,7 @@ kind = "parallel"
 between = ["a.P", "b.Q"]"#,
     keys: &[
         BETWEEN,
-        Key {
-            name: "angle",
-            takes: Takes::Number(Range::Any),
-            unit: "rad",
-            otherwise: Otherwise::Default("0.0"),
-            about: "angle of the second body relative to the first",
-        },
+        Key::new("angle", Takes::Number(Range::Any), "rad", "angle of the second body relative to the first").or("0.0"),
     ],
     also: None,
 };

@@ -5,7 +5,7 @@
 
 use super::{Acts, Ends, Powers, lift};
 use crate::course::Course;
-use crate::parameter::{Key, Kind, Otherwise, Range, Takes, Values};
+use crate::parameter::{Key, Kind, Range, Takes, Values};
 use crate::plane::{Motion, Pose, Vector, Wrench};
 use crate::scalar::{Lift, Scalar};
 
@@ -19,41 +19,11 @@ kind = "force"
 at = "slider.C"
 force = [0.0, -1.0]"#,
     keys: &[
-        Key {
-            name: "at",
-            takes: Takes::Point,
-            unit: "",
-            otherwise: Otherwise::Required,
-            about: "the point",
-        },
-        Key {
-            name: "force",
-            takes: Takes::Vector(Range::Any),
-            unit: "N",
-            otherwise: Otherwise::Absent,
-            about: "the force, where it does not change",
-        },
-        Key {
-            name: "direction",
-            takes: Takes::Vector(Range::Positive),
-            unit: "",
-            otherwise: Otherwise::Absent,
-            about: "in place of `force`, with `magnitude`: its direction, of any length",
-        },
-        Key {
-            name: "magnitude",
-            takes: Takes::Course,
-            unit: "N",
-            otherwise: Otherwise::Absent,
-            about: "the force along the direction",
-        },
-        Key {
-            name: "frame",
-            takes: Takes::Word(&["fixed", "body"]),
-            unit: "",
-            otherwise: Otherwise::Default("\"fixed\""),
-            about: "the frame that the force is written in",
-        },
+        Key::new("at", Takes::Point, "", "the point"),
+        Key::new("force", Takes::Vector(Range::Any), "N", "the force, where it does not change").optional(),
+        Key::new("direction", Takes::Vector(Range::Positive), "", "in place of `force`, with `magnitude`: its direction, of any length").optional(),
+        Key::new("magnitude", Takes::Course, "N", "the force along the direction").optional(),
+        Key::new("frame", Takes::Word(&["fixed", "body"]), "", "the frame that the force is written in").or("\"fixed\""),
     ],
     also: Some(one_of_two),
 };

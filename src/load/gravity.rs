@@ -4,7 +4,7 @@
 //! ```
 
 use super::{Acts, Ends};
-use crate::parameter::{Key, Kind, Otherwise, Range, Takes, Values};
+use crate::parameter::{Key, Kind, Range, Takes, Values};
 use crate::plane::{Motion, Pose, Vector, Wrench};
 use crate::scalar::{Lift, Scalar};
 
@@ -16,13 +16,7 @@ pub const KIND: Kind = Kind {
     example: r#"[loads.gravity]
 kind = "gravity"
 acceleration = [0.0, -9.81]"#,
-    keys: &[Key {
-        name: "acceleration",
-        takes: Takes::Vector(Range::Any),
-        unit: "m/s²",
-        otherwise: Otherwise::Required,
-        about: "acceleration of free fall, fixed frame",
-    }],
+    keys: &[Key::new("acceleration", Takes::Vector(Range::Any), "m/s²", "acceleration of free fall, fixed frame")],
     also: None,
 };
 

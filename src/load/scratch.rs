@@ -4,7 +4,7 @@
 //! ```
 
 use super::{Acts, Ends, Powers, lift};
-use crate::parameter::{Key, Kind, Otherwise, Range, Takes, Values};
+use crate::parameter::{Key, Kind, Range, Takes, Values};
 use crate::plane::{Motion, Pose, Vector, Wrench};
 use crate::scalar::{Lift, Scalar};
 
@@ -18,20 +18,8 @@ kind = "drag"
 at = "rod.E"
 damping = 0.2"#,
     keys: &[
-        Key {
-            name: "at",
-            takes: Takes::Point,
-            unit: "",
-            otherwise: Otherwise::Required,
-            about: "the point",
-        },
-        Key {
-            name: "damping",
-            takes: Takes::Number(Range::NotNegative),
-            unit: "N s/m",
-            otherwise: Otherwise::Required,
-            about: "d",
-        },
+        Key::new("at", Takes::Point, "", "the point"),
+        Key::new("damping", Takes::Number(Range::NotNegative), "N s/m", "d"),
     ],
     also: None,
 };

@@ -7,7 +7,7 @@
 
 use super::{Acts, Ends, Powers, lift};
 use crate::joint::Pair;
-use crate::parameter::{Key, Kind, Otherwise, Range, Takes, Values};
+use crate::parameter::{Key, Kind, Range, Takes, Values};
 use crate::plane::{Motion, Pose, Vector, Wrench};
 use crate::scalar::{Lift, Scalar};
 
@@ -22,41 +22,11 @@ between = ["ground.C", "rocker.D"]
 stiffness = 4530.0
 free_length = 0.07785"#,
     keys: &[
-        Key {
-            name: "between",
-            takes: Takes::Points,
-            unit: "",
-            otherwise: Otherwise::Required,
-            about: "its two points",
-        },
-        Key {
-            name: "stiffness",
-            takes: Takes::Number(Range::Any),
-            unit: "N/m",
-            otherwise: Otherwise::Required,
-            about: "k",
-        },
-        Key {
-            name: "free_length",
-            takes: Takes::Number(Range::NotNegative),
-            unit: "m",
-            otherwise: Otherwise::Required,
-            about: "L₀, the length at which it does not pull",
-        },
-        Key {
-            name: "damping",
-            takes: Takes::Number(Range::NotNegative),
-            unit: "N s/m",
-            otherwise: Otherwise::Default("0.0"),
-            about: "d",
-        },
-        Key {
-            name: "cubic",
-            takes: Takes::Number(Range::Any),
-            unit: "N/m³",
-            otherwise: Otherwise::Default("0.0"),
-            about: "k₃",
-        },
+        Key::new("between", Takes::Points, "", "its two points"),
+        Key::new("stiffness", Takes::Number(Range::Any), "N/m", "k"),
+        Key::new("free_length", Takes::Number(Range::NotNegative), "m", "L₀, the length at which it does not pull"),
+        Key::new("damping", Takes::Number(Range::NotNegative), "N s/m", "d").or("0.0"),
+        Key::new("cubic", Takes::Number(Range::Any), "N/m³", "k₃").or("0.0"),
     ],
     also: None,
 };

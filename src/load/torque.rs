@@ -5,7 +5,7 @@
 
 use super::{Acts, Ends, Powers, torque_on_second};
 use crate::course::Course;
-use crate::parameter::{Key, Kind, Otherwise, Takes, Values};
+use crate::parameter::{Key, Kind, Takes, Values};
 use crate::plane::{Motion, Pose, Wrench};
 use crate::scalar::{Lift, Scalar};
 
@@ -19,27 +19,9 @@ kind = "torque"
 body = "crank"
 torque = 0.033"#,
     keys: &[
-        Key {
-            name: "body",
-            takes: Takes::Body,
-            unit: "",
-            otherwise: Otherwise::Required,
-            about: "the body",
-        },
-        Key {
-            name: "on",
-            takes: Takes::Body,
-            unit: "",
-            otherwise: Otherwise::Default("\"ground\""),
-            about: "the body that takes the reaction",
-        },
-        Key {
-            name: "torque",
-            takes: Takes::Course,
-            unit: "N m",
-            otherwise: Otherwise::Required,
-            about: "the torque, counter-clockwise",
-        },
+        Key::new("body", Takes::Body, "", "the body"),
+        Key::new("on", Takes::Body, "", "the body that takes the reaction").or("\"ground\""),
+        Key::new("torque", Takes::Course, "N m", "the torque, counter-clockwise"),
     ],
     also: None,
 };

@@ -4,7 +4,7 @@
 //! ```
 
 use super::{Acts, Ends, Powers, torque_on_second};
-use crate::parameter::{Key, Kind, Otherwise, Range, Takes, Values};
+use crate::parameter::{Key, Kind, Range, Takes, Values};
 use crate::plane::{Motion, Pose, Wrench};
 use crate::scalar::{Lift, Scalar};
 
@@ -18,34 +18,10 @@ kind = "torsion-spring"
 between = ["ground", "wheel"]
 stiffness = 40.0"#,
     keys: &[
-        Key {
-            name: "between",
-            takes: Takes::Bodies,
-            unit: "",
-            otherwise: Otherwise::Required,
-            about: "its two bodies",
-        },
-        Key {
-            name: "stiffness",
-            takes: Takes::Number(Range::Any),
-            unit: "N m/rad",
-            otherwise: Otherwise::Required,
-            about: "k",
-        },
-        Key {
-            name: "free_angle",
-            takes: Takes::Number(Range::Any),
-            unit: "rad",
-            otherwise: Otherwise::Default("0.0"),
-            about: "φ₀, the angle of the second body relative to the first without torque",
-        },
-        Key {
-            name: "damping",
-            takes: Takes::Number(Range::NotNegative),
-            unit: "N m s",
-            otherwise: Otherwise::Default("0.0"),
-            about: "d",
-        },
+        Key::new("between", Takes::Bodies, "", "its two bodies"),
+        Key::new("stiffness", Takes::Number(Range::Any), "N m/rad", "k"),
+        Key::new("free_angle", Takes::Number(Range::Any), "rad", "φ₀, the angle of the second body relative to the first without torque").or("0.0"),
+        Key::new("damping", Takes::Number(Range::NotNegative), "N m s", "d").or("0.0"),
     ],
     also: None,
 };

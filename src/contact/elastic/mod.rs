@@ -10,7 +10,7 @@
 mod logarithmic;
 
 use super::stiffness::Material;
-use crate::parameter::{Key, Kind, Otherwise, Range, Takes, Values, kinds};
+use crate::parameter::{Key, Kind, Range, Takes, Values, kinds};
 use crate::scalar::Scalar;
 
 kinds! { $
@@ -128,31 +128,28 @@ impl<S: Scalar> ElasticLaw<S> for Elastic<S> {
 }
 
 /// Young's moduli of both materials, needed.
-const YOUNG: Key = Key {
-    name: "young",
-    takes: Takes::OfMaterials(Range::Positive),
-    unit: "Pa",
-    otherwise: Otherwise::Required,
-    about: "Young's modulus; one number for both materials, or two, the bearing's first",
-};
+const YOUNG: Key = Key::new(
+    "young",
+    Takes::OfMaterials(Range::Positive),
+    "Pa",
+    "Young's modulus; one number for both materials, or two, the bearing's first",
+);
 
 /// Poisson's ratios of both materials, needed.
-const POISSON: Key = Key {
-    name: "poisson",
-    takes: Takes::OfMaterials(Range::PoissonRatio),
-    unit: "",
-    otherwise: Otherwise::Required,
-    about: "Poisson's ratio; one number for both materials, or two, the bearing's first",
-};
+const POISSON: Key = Key::new(
+    "poisson",
+    Takes::OfMaterials(Range::PoissonRatio),
+    "",
+    "Poisson's ratio; one number for both materials, or two, the bearing's first",
+);
 
 /// The length of a line contact.
-const LENGTH: Key = Key {
-    name: "length",
-    takes: Takes::Number(Range::Positive),
-    unit: "m",
-    otherwise: Otherwise::Required,
-    about: "length L over which journal and bearing touch, along the axis",
-};
+const LENGTH: Key = Key::new(
+    "length",
+    Takes::Number(Range::Positive),
+    "m",
+    "length L over which journal and bearing touch, along the axis",
+);
 
 /// The materials of bearing and journal, as the keys have them.
 fn materials<S: Scalar>(values: &Values) -> [Material<S>; 2] {

@@ -25,22 +25,10 @@ pub const KIND: Kind = Kind {
     example: r#"[joints.A.clearance]
 normal = { law = "lankarani-nikravesh", restitution = 0.9, elastic = "power", stiffness = "hertz-printed", young = 207e9, poisson = 0.3 }"#,
     keys: &[
-        Key {
-            name: "stiffness",
-            takes: Takes::NumberOr(Range::Positive, &["hertz-printed", "hertz-internal"]),
-            unit: "N/mⁿ",
-            otherwise: Otherwise::Required,
-            about: "K: by the paper's equation 5, of a journal inside its bearing, or a number",
-        },
+        Key::new("stiffness", Takes::NumberOr(Range::Positive, &["hertz-printed", "hertz-internal"]), "N/mⁿ", "K: by the paper's equation 5, of a journal inside its bearing, or a number"),
         Key { otherwise: Otherwise::Absent, ..YOUNG },
         Key { otherwise: Otherwise::Absent, ..POISSON },
-        Key {
-            name: "exponent",
-            takes: Takes::Number(Range::AtLeastOne),
-            unit: "",
-            otherwise: Otherwise::Default("1.5"),
-            about: "exponent n of the depth",
-        },
+        Key::new("exponent", Takes::Number(Range::AtLeastOne), "", "exponent n of the depth").or("1.5"),
     ],
     also: Some(material_where_it_is_used),
 };

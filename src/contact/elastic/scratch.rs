@@ -4,7 +4,7 @@
 //! ```
 
 use super::{ElasticLaw, Ends};
-use crate::parameter::{Key, Kind, Otherwise, Range, Takes, Values};
+use crate::parameter::{Key, Kind, Range, Takes, Values};
 use crate::scalar::Scalar;
 
 /// The kind and its keys.
@@ -15,20 +15,8 @@ pub const KIND: Kind = Kind {
     example: r#"[joints.A.clearance]
 normal = { law = "hertz", elastic = "hardening", stiffness = 1e7, depth = 1e-4 }"#,
     keys: &[
-        Key {
-            name: "stiffness",
-            takes: Takes::Number(Range::Positive),
-            unit: "N/m",
-            otherwise: Otherwise::Required,
-            about: "stiffness K where the contact begins",
-        },
-        Key {
-            name: "depth",
-            takes: Takes::Number(Range::Positive),
-            unit: "m",
-            otherwise: Otherwise::Required,
-            about: "depth δ_1 at which the force is twice that of the spring",
-        },
+        Key::new("stiffness", Takes::Number(Range::Positive), "N/m", "stiffness K where the contact begins"),
+        Key::new("depth", Takes::Number(Range::Positive), "m", "depth δ_1 at which the force is twice that of the spring"),
     ],
     also: None,
 };

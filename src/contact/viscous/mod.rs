@@ -16,7 +16,7 @@
 //!
 //! A new law is a file here and its line in the list of kinds.
 
-use crate::parameter::{Key, Otherwise, Range, Takes, Values, kinds};
+use crate::parameter::{Key, Range, Takes, Values, kinds};
 use crate::scalar::Scalar;
 
 kinds! { $
@@ -144,10 +144,5 @@ pub fn rebound_of(damping_ratio: f64) -> f64 {
 }
 
 /// The coefficient of the damping, where the case gives it.
-const DAMPING: Key = Key {
-    name: "damping",
-    takes: Takes::Number(Range::NotNegative),
-    unit: "N s/m",
-    otherwise: Otherwise::Required,
-    about: "coefficient c of the damper",
-};
+const DAMPING: Key =
+    Key::new("damping", Takes::Number(Range::NotNegative), "N s/m", "coefficient c of the damper");

@@ -21,7 +21,7 @@
 //! root, in which all is smooth.
 
 use super::{Ends, ViscousLaw, ratio_of};
-use crate::parameter::{Key, Kind, Otherwise, Range, Takes, Values};
+use crate::parameter::{Key, Kind, Range, Takes, Values};
 use crate::scalar::Scalar;
 
 /// The kind and its keys.
@@ -32,20 +32,8 @@ pub const KIND: Kind = Kind {
     example: r#"[joints.A.clearance]
 normal = { law = "tsuji", restitution = 0.8, mass = 0.05, stiffness = 1e10 }"#,
     keys: &[
-        Key {
-            name: "restitution",
-            takes: Takes::Number(Range::Restitution),
-            unit: "",
-            otherwise: Otherwise::Required,
-            about: "what one impact of the mass by itself rebounds at, over its speed",
-        },
-        Key {
-            name: "mass",
-            takes: Takes::Number(Range::Positive),
-            unit: "kg",
-            otherwise: Otherwise::Required,
-            about: "mass m that journal and bearing meet with (`freeplay check` tells it)",
-        },
+        Key::new("restitution", Takes::Number(Range::Restitution), "", "what one impact of the mass by itself rebounds at, over its speed"),
+        Key::new("mass", Takes::Number(Range::Positive), "kg", "mass m that journal and bearing meet with (`freeplay check` tells it)"),
     ],
     also: None,
 };
