@@ -1,6 +1,6 @@
 //! From a checked case to a finished run: which arithmetic, which engine, which loop.
 
-use crate::case::{self, Case, Changes, EngineName, NormName, Precision, Sampling, SolverPlan};
+use crate::case::{self, Case, Changes, EngineName, NormName, Precision, SolverPlan};
 use crate::dae::{Count, Engine};
 use crate::engine::explicit::{self, Explicit};
 use crate::engine::ida::{self, Ida};
@@ -81,11 +81,7 @@ impl<'a> Simulation<'a> {
     /// # Errors
     /// Complaints about the mechanism, with the lines of the case file.
     pub fn new(case: &'a Case) -> Result<Self, case::Error> {
-        let schedule = Schedule::new(&case.plan.duration, &case.plan.sample_interval);
-        let schedule = match case.plan.sampling {
-            Sampling::Uniform => schedule,
-            Sampling::Adaptive => schedule.adaptive(),
-        };
+        let schedule = case.plan.schedule();
         let mechanism = assemble(case)?;
         let complaints = what_no_run_begins_with(&mechanism);
         if !complaints.is_empty() {
@@ -435,7 +431,7 @@ pub fn header(case: &Case, mechanism: &Mechanism<f64>, started_utc: String) -> H
         sundials_version: ida::sundials_version(),
         started_utc,
         samples: match case.plan.checkpoint_interval {
-            None => Some(Schedule::new(&case.plan.duration, &case.plan.sample_interval).len()),
+            None => Some(case.plan.schedule().len()),
             Some(_) => None,
         },
     }

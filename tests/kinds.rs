@@ -408,3 +408,30 @@ fn what_does_not_belong_to_a_kind_is_told_with_its_key() {
         assert!(words.contains(told), "{rest}\n{words}");
     }
 }
+
+#[test]
+fn windows_of_samples_show_the_same_run() {
+    let wrist = "tests/kinds/slider-crank-wrist-pin.toml";
+    let window = "run.window=[{from=0.0011,to=0.0013,interval=1e-7},{from=0.002,to=0.0021,interval=3e-7}]";
+    for engine in ENGINES {
+        let set = [engine, "run.duration=0.003", "run.sample_interval=1e-5"];
+        let plain = simulate(&case(wrist, &set));
+        for sampling in ["run.sampling=uniform", "run.sampling=adaptive"] {
+            let windowed = simulate(&case(wrist, &[&set[..], &[window, sampling]].concat()));
+            assert!(windowed.samples.windows(2).all(|pair| pair[0].time < pair[1].time));
+            for k in 11_000..=13_000 {
+                let sample = windowed.at(format!("{k}e-7").parse().unwrap());
+                let of_grid = (k % 100 == 0).then(|| plain.at(sample.time));
+                assert!(of_grid.is_none_or(|same| same.bodies == sample.bodies), "{k}");
+            }
+            for k in 6667..=7000 {
+                windowed.at(format!("{}e-7", 3 * k).parse().unwrap());
+            }
+            let outside = |s: &&Observation| s.time < 0.0011;
+            if sampling == "run.sampling=uniform" {
+                assert_eq!(windowed.samples.iter().filter(outside).count(), 110);
+                assert_eq!(windowed.samples.len(), 301 + 2001 - 21 + 334 - 11 + 1);
+            }
+        }
+    }
+}

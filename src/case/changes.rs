@@ -127,10 +127,26 @@ fn set(table: &mut dyn TableLike, keys: &[String], value: &Value) -> Result<(), 
     let made = || Item::Value(Value::InlineTable(InlineTable::new()));
     let below = table.entry(key).or_insert_with(made);
     let kind = below.type_name();
-    match below.as_table_like_mut() {
+    let (below, rest): (Option<&mut dyn TableLike>, _) = match (below, rest) {
+        (Item::ArrayOfTables(list), [key, rest @ ..]) if !rest.is_empty() => {
+            let table = place(key).and_then(|place| list.get_mut(place));
+            (table.map(|table| table as &mut dyn TableLike), rest)
+        }
+        (Item::Value(Value::Array(list)), [key, rest @ ..]) if !rest.is_empty() => {
+            let table = place(key).and_then(|place| list.get_mut(place)?.as_inline_table_mut());
+            (table.map(|table| table as &mut dyn TableLike), rest)
+        }
+        (below, rest) => (below.as_table_like_mut(), rest),
+    };
+    match below {
         Some(below) => set(below, rest, value),
         None => Err(format!("cannot be set: {key:?} is no table but a value ({kind})")),
     }
+}
+
+/// Place of a table in a list, where they count from 1.
+fn place(key: &str) -> Option<usize> {
+    key.parse::<usize>().ok()?.checked_sub(1)
 }
 
 /// Puts a value in the place of what a key had; the layout and a comment behind it stay.

@@ -3,6 +3,7 @@
 use super::table_reader::TableReader;
 use crate::course::Course;
 use crate::model::{Complaint, Complaints, Description, KeyPath};
+use crate::run::{SampleWindow, Schedule};
 use crate::scalar::{Decimal, F256, Scalar};
 
 /// Rows of samples that a run may write at most.
@@ -30,6 +31,8 @@ pub struct Plan {
     revolutions: Option<Decimal>,
     /// Time between samples (s).
     pub sample_interval: Decimal,
+    /// Parts of the run that have samples at intervals of their own.
+    pub windows: Vec<SampleWindow>,
     /// Where samples are taken.
     pub sampling: Sampling,
     /// Time between checkpoints (s); `None` without any.
@@ -126,7 +129,7 @@ impl NormName {
 impl Plan {
     /// Reads the keys `run` and `solver` of a case's root.
     pub(super) fn read(root: &mut TableReader) -> Plan {
-        let (revolutions, duration, sample_interval, sampling, checkpoint_interval) =
+        let (revolutions, duration, sample_interval, windows, sampling, checkpoint_interval) =
             root.table("run", |keys| {
                 let revolutions: Option<Decimal> = keys.optional("revolutions", "");
                 let duration = match revolutions {
@@ -137,6 +140,7 @@ impl Plan {
                     revolutions,
                     duration,
                     keys.required("sample_interval", "s"),
+                    keys.list_of_tables("window", window),
                     keys.choice("sampling", &Sampling::ALL, Some("uniform")),
                     keys.optional("checkpoint_interval", "s"),
                 )
@@ -145,6 +149,7 @@ impl Plan {
             duration: duration.unwrap_or_else(|| Decimal::from(f64::NAN)),
             revolutions,
             sample_interval,
+            windows,
             sampling: sampling.unwrap_or(Sampling::Uniform),
             checkpoint_interval,
             solver: root.table_of_defaults("solver", SolverPlan::read),
@@ -177,6 +182,16 @@ impl Plan {
         };
         self.duration = Decimal::from((revolutions.value::<F256>() * period).to_f64());
         None
+    }
+
+    /// When samples are taken.
+    pub fn schedule(&self) -> Schedule {
+        let (duration, interval) = (&self.duration, &self.sample_interval);
+        let schedule = Schedule::with_windows(duration, interval, &self.windows);
+        match self.sampling {
+            Sampling::Uniform => schedule,
+            Sampling::Adaptive => schedule.adaptive(),
+        }
     }
 
     /// What is wrong with the numbers of the plan.
@@ -214,12 +229,59 @@ impl Plan {
         let duration_right = complaints.require_positive(run.key("duration"), duration, "s");
         let key = run.key("sample_interval");
         let interval_right = complaints.require_positive(key.clone(), interval, "s");
+        let limit = format!("at most {MOST_SAMPLES:e} are written");
         let rows = duration.to_f64() / interval.to_f64();
         if duration_right && interval_right && rows > MOST_SAMPLES {
             let rows = format!("a run of {duration} s would write {rows:.3e} rows of samples");
-            let limit = format!("at most {MOST_SAMPLES:e} are written");
             complaints.add(key, format!("is too small (s), {interval}: {rows}, {limit}"));
         }
+        let before = complaints.len();
+        self.check_windows(complaints, interval_right);
+        let span = |w: &SampleWindow| (w.to.to_f64() - w.from.to_f64()) / w.interval.to_f64();
+        let rows: f64 = self.windows.iter().map(span).sum();
+        if complaints.len() == before && rows > MOST_SAMPLES {
+            let rows = format!("have {rows:.3e} rows of samples");
+            complaints.add(run.key("window"), format!("{rows} together, {limit}"));
+        }
+    }
+
+    /// Windows are in order by themselves, denser than the rest, and apart from each other.
+    fn check_windows(&self, complaints: &mut Complaints, interval_right: bool) {
+        for (k, window) in self.windows.iter().enumerate() {
+            let key = KeyPath::new(["run", "window"]).key((k + 1).to_string());
+            let SampleWindow { from, to, interval } = window;
+            let begins = |x: f64| x >= 0.0;
+            complaints.require(key.key("from"), from, "s", "zero or positive", begins);
+            if complaints.require_finite(key.key("to"), to, "s") && !(to.to_f64() > from.to_f64())
+            {
+                let message = format!("must be greater than from, {from} (s), is {to}");
+                complaints.add(key.key("to"), message);
+            }
+            let around = self.sample_interval.to_f64();
+            if complaints.require_positive(key.key("interval"), interval, "s")
+                && interval_right
+                && interval.to_f64() > around
+            {
+                let message = format!("must be at most run.sample_interval, {around} (s)");
+                complaints.add(key.key("interval"), format!("{message}, is {interval}"));
+            }
+            let overlaps = |other: &SampleWindow| {
+                from.to_f64() < other.to.to_f64() && other.from.to_f64() < to.to_f64()
+            };
+            if let Some(other) = self.windows[..k].iter().position(overlaps) {
+                let SampleWindow { from, to, .. } = &self.windows[other];
+                let which = format!("window {} (from {from} to {to} s)", other + 1);
+                complaints.add(key, format!("overlaps {which}: windows must be apart"));
+            }
+        }
+    }
+}
+
+fn window(keys: &mut TableReader) -> SampleWindow {
+    SampleWindow {
+        from: keys.required("from", "s"),
+        to: keys.required("to", "s"),
+        interval: keys.required("interval", "s"),
     }
 }
 

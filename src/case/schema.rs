@@ -190,6 +190,7 @@ pub fn tables() -> String {
     kinds(&mut text, "Courses: values that change with time", &defs["course"], course::KINDS);
     table(&mut text, "Start: `[start]`, by body", "", &defs["start"]);
     table(&mut text, "Run: `[run]`", "", &schema["properties"]["run"]);
+    table(&mut text, "Windows of samples: `[[run.window]]`", "", &defs["window"]);
     table(&mut text, "Solver: `[solver]`", "", &schema["properties"]["solver"]);
     text
 }
@@ -257,7 +258,8 @@ fn alternatives<'s>(schema: &'s Value, at: &'s Value) -> Vec<&'s Value> {
 /// What a key leads to.
 fn below_of<'s>(at: &'s Value, key: &str) -> Option<&'s Value> {
     let named = at["properties"].get(key);
-    named.or_else(|| at.get("additionalProperties").filter(|any| any.is_object()))
+    let any = || at.get("additionalProperties").or(at.get("items")).filter(|any| any.is_object());
+    named.or_else(any)
 }
 
 /// What a value is, in words.
@@ -278,6 +280,7 @@ fn takes(value: &Value) -> String {
     match value["type"].as_str() {
         Some("number") => format!("number{}", limits(value)),
         Some("boolean") => "`true` or `false`".into(),
+        Some("array") if value["items"]["$ref"].is_string() => "tables".into(),
         Some("array") => format!("two {}s", value["items"]["type"].as_str().unwrap_or("value")),
         Some("object") => "table".into(),
         other => other.unwrap_or_default().to_owned(),

@@ -5,9 +5,10 @@ use crate::model::{Complaint, KeyPath};
 use std::fmt;
 use std::fs::File;
 use std::io::Read;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use toml_edit::{Document, DocumentMut, TableLike, TomlError};
+use toml_edit::{Document, DocumentMut, Item, TableLike, TomlError, Value};
 
 /// Largest case file that is read (bytes). Most are a few thousand bytes long; this keeps a
 /// wrong path, to a result file say, from filling the memory.
@@ -104,15 +105,56 @@ impl Source {
 
     /// The line in the file of the key at this path.
     fn line(&self, keys: &[String]) -> Option<usize> {
-        let (last, parents) = keys.split_last()?;
         let Written { file, lines, .. } = &*self.written;
-        let mut table: &dyn TableLike = file.as_table();
-        for parent in parents {
-            table = table.get(parent)?.as_table_like()?;
+        let mut inside = Inside::Table(file.as_table());
+        let mut span = None;
+        for key in keys {
+            (inside, span) = inside.below(key)?;
         }
-        let (key, item) = table.get_key_value(last)?;
-        let span = key.span().or_else(|| item.span())?;
+        let span = span?;
         Some(lines.partition_point(|begin| *begin <= span.start))
+    }
+}
+
+/// What of a file keys lead into.
+enum Inside<'a> {
+    Table(&'a dyn TableLike),
+    /// Tables that count from 1.
+    List(Vec<&'a dyn TableLike>),
+    Nothing,
+}
+
+impl<'a> Inside<'a> {
+    /// What a key leads to, and where it is written.
+    fn below(&self, key: &str) -> Option<(Inside<'a>, Option<Range<usize>>)> {
+        match self {
+            Inside::Table(table) => {
+                let (key, item) = table.get_key_value(key)?;
+                let inside = match (item.as_table_like(), list_of_tables(item)) {
+                    (Some(table), _) => Inside::Table(table),
+                    (None, Some(list)) => Inside::List(list),
+                    (None, None) => Inside::Nothing,
+                };
+                Some((inside, key.span().or_else(|| item.span())))
+            }
+            Inside::List(list) => {
+                let table = *list.get(key.parse::<usize>().ok()?.checked_sub(1)?)?;
+                let first = table.iter().next().and_then(|(key, _)| table.key(key)?.span());
+                Some((Inside::Table(table), first))
+            }
+            Inside::Nothing => None,
+        }
+    }
+}
+
+/// The tables of a list of tables, `[[run.window]]` or `window = [{ … }]`.
+pub(super) fn list_of_tables(item: &Item) -> Option<Vec<&dyn TableLike>> {
+    match item {
+        Item::ArrayOfTables(list) => Some(list.iter().map(|t| t as &dyn TableLike).collect()),
+        Item::Value(Value::Array(list)) => {
+            list.iter().map(|t| t.as_inline_table().map(|t| t as &dyn TableLike)).collect()
+        }
+        _ => None,
     }
 }
 

@@ -1,6 +1,6 @@
 //! Reads the keys of one TOML table, and notes what is missing, of the wrong type or unknown.
 
-use super::DefaultTaken;
+use super::{DefaultTaken, source};
 use crate::course;
 use crate::model::{Complaint, KeyPath, MOST_TOLD, did_you_mean, in_brackets, shortened};
 use crate::parameter::{self, Key, Kind, Otherwise, Takes, Values};
@@ -512,6 +512,28 @@ impl<'d> TableReader<'d, '_> {
             values
         };
         self.optional_table(key, each).unwrap_or_default()
+    }
+
+    /// What `read` makes of every table of a list below a key that may be left out; in complaints
+    /// they count from 1.
+    pub fn list_of_tables<T>(
+        &mut self,
+        key: &'static str,
+        mut read: impl FnMut(&mut TableReader) -> T,
+    ) -> Vec<T> {
+        let Some(item) = self.item(key) else { return Vec::new() };
+        let Some(list) = source::list_of_tables(item) else {
+            let found = describe(item);
+            self.complain(key, format!("must be a list of tables [[…{key}]], is {found}"));
+            return Vec::new();
+        };
+        let path = self.path.key(key);
+        let each = list.into_iter().enumerate();
+        each.map(|(k, table)| {
+            let path = path.key((k + 1).to_string());
+            TableReader::read(path, Some(table), self.findings, &mut read)
+        })
+        .collect()
     }
 
     /// Every value below a key, each with its name, in the file's order.

@@ -21,7 +21,7 @@ pub use checkpoint::{Checkpoint, Checkpoints, NotACheckpoint, Reached, Stretch};
 pub use extremes::LEFT_OUT;
 pub use kinematic::{Assembled, TooFar, kinematic};
 pub use recorder::*;
-pub use schedule::Schedule;
+pub use schedule::{SampleWindow, Schedule};
 pub use trajectory::Trajectory;
 pub use witness::Contradiction;
 

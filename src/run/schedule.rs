@@ -3,8 +3,9 @@
 use crate::scalar::{Decimal, F256, Scalar};
 
 /// Sample times: the multiples k · interval from 0 to the duration, both ends included; the
-/// duration itself where it is no multiple. Each is the decimal product, rounded once. Or any
-/// times within the duration.
+/// duration itself where it is no multiple. Within a window they are the multiples of its own
+/// interval, both its ends included. Each is the decimal product, rounded once. Or any times within
+/// the duration.
 #[derive(Debug, Clone)]
 pub struct Schedule {
     duration: F256,
@@ -12,16 +13,54 @@ pub struct Schedule {
     adaptive: bool,
 }
 
+/// A part of a run that has samples at an interval of its own.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SampleWindow {
+    /// Begin (s).
+    pub from: Decimal,
+    /// End (s).
+    pub to: Decimal,
+    /// Time between samples (s).
+    pub interval: Decimal,
+}
+
 /// The sample times that are known beforehand.
 #[derive(Debug, Clone)]
 enum Grid {
-    Uniform {
-        interval: F256,
-        /// Number of multiples of the interval, zero among them.
-        multiples: u64,
+    Multiples {
+        pieces: Vec<Piece>,
+        /// Whether the duration is none of them, and sampled for itself.
         ends_between: bool,
     },
     At(Vec<Decimal>),
+}
+
+/// Samples at neighbouring multiples of an interval (s).
+#[derive(Debug, Clone, Copy)]
+struct Piece {
+    interval: F256,
+    /// The first multiple.
+    first: u64,
+    /// How many.
+    count: u64,
+    /// Number of the first sample in the schedule.
+    begins: u64,
+}
+
+impl Piece {
+    /// Time of sample `k` of the schedule (s).
+    fn time(&self, k: u64) -> F256 {
+        F256::from(self.first + (k - self.begins)) * self.interval
+    }
+
+    fn ends(&self) -> u64 {
+        self.begins + self.count
+    }
+
+    /// Time of its last sample (s), if it has one.
+    fn last(&self) -> Option<F256> {
+        (self.count > 0).then(|| self.time(self.ends() - 1))
+    }
 }
 
 /// How many times an interval fits into a duration (s), and whether nothing is left.
@@ -34,17 +73,52 @@ pub(super) fn multiples(duration: F256, interval: F256) -> (u64, bool) {
     (last.to_f64() as u64, whole)
 }
 
+/// Adds the multiples of an interval that lie between two times, both included (s); none that is
+/// told as the last before it.
+fn add(pieces: &mut Vec<Piece>, interval: F256, from: F256, to: F256) {
+    let (before, whole) = multiples(from, interval);
+    let mut first = if whole { before } else { before + 1 };
+    let (last, _) = multiples(to, interval);
+    let told = pieces.iter().rev().find_map(Piece::last).map(F256::to_f64);
+    while first <= last && told >= Some((F256::from(first) * interval).to_f64()) {
+        first += 1;
+    }
+    let begins = pieces.last().map_or(0, Piece::ends);
+    pieces.push(Piece { interval, first, count: (last + 1).saturating_sub(first), begins });
+}
+
 impl Schedule {
     /// The schedule of a run of `duration` (s) sampled every `interval` (s), both positive.
     pub fn new(duration: &Decimal, interval: &Decimal) -> Self {
+        Schedule::with_windows(duration, interval, &[])
+    }
+
+    /// The same with windows that have intervals of their own; they do not overlap.
+    pub fn with_windows(duration: &Decimal, interval: &Decimal, windows: &[SampleWindow]) -> Self {
         let (duration, interval): (F256, F256) = (duration.value(), interval.value());
-        let (last, whole) = multiples(duration, interval);
+        let mut windows: Vec<[F256; 3]> = (windows.iter())
+            .map(|window| [&window.from, &window.to, &window.interval].map(Decimal::value))
+            .filter(|[from, ..]| *from < duration)
+            .collect();
+        windows.sort_by(|[a, ..], [b, ..]| a.to_f64().total_cmp(&b.to_f64()));
+        let mut pieces = Vec::new();
+        let mut done = F256::from(0);
+        for [from, to, within] in windows {
+            let to = to.min(duration);
+            add(&mut pieces, interval, done, from);
+            add(&mut pieces, within, from, to);
+            done = to;
+        }
+        add(&mut pieces, interval, done, duration);
+        let last = pieces.iter().rev().find_map(Piece::last).unwrap_or(F256::from(0));
+        let ends_between = (duration - last).abs() > duration * F256::from_f64(1e-60);
         // times are told as doubles: a multiple with the double of the duration is the duration
-        let end = F256::from(last) * interval;
-        let told_as_the_end = !whole && end.to_f64() >= duration.to_f64();
-        let multiples = last + u64::from(!told_as_the_end);
-        let grid = Grid::Uniform { interval, multiples, ends_between: !whole };
-        Schedule { duration, grid, adaptive: false }
+        if ends_between && last.to_f64() >= duration.to_f64() {
+            let piece = pieces.iter_mut().rev().find(|piece| piece.count > 0);
+            piece.into_iter().for_each(|piece| piece.count -= 1);
+        }
+        pieces.retain(|piece| piece.count > 0);
+        Schedule { duration, grid: Grid::Multiples { pieces, ends_between }, adaptive: false }
     }
 
     /// The same run, sampled at these times (s) and nowhere else: one or more, strictly increasing,
@@ -74,7 +148,9 @@ impl Schedule {
     /// Number of samples, those added where things happen left out.
     pub fn len(&self) -> u64 {
         match &self.grid {
-            Grid::Uniform { multiples, ends_between, .. } => multiples + u64::from(*ends_between),
+            Grid::Multiples { pieces, ends_between } => {
+                pieces.last().map_or(0, Piece::ends) + u64::from(*ends_between)
+            }
             Grid::At(times) => times.len() as u64,
         }
     }
@@ -87,11 +163,13 @@ impl Schedule {
     /// Time of sample `k` (s).
     pub fn time<S: Scalar>(&self, k: u64) -> S {
         match &self.grid {
-            Grid::Uniform { interval, multiples, .. } if k < *multiples => {
-                // the product, rounded, may pass a duration that it equals in decimals
-                S::from_octuple((F256::from(k) * *interval).min(self.duration))
+            Grid::Multiples { pieces, .. } => {
+                match pieces.get(pieces.partition_point(|piece| piece.ends() <= k)) {
+                    // the product, rounded, may pass a duration that it equals in decimals
+                    Some(piece) => S::from_octuple(piece.time(k).min(self.duration)),
+                    None => self.duration(),
+                }
             }
-            Grid::Uniform { .. } => self.duration(),
             // a duration with more digits than a double has may lie before its own rounding
             Grid::At(times) => times[k as usize].value::<S>().min(self.duration()),
         }
@@ -101,7 +179,7 @@ impl Schedule {
     /// run has none there.
     pub(super) fn is_only_of_the_end(&self, k: u64) -> bool {
         match &self.grid {
-            Grid::Uniform { multiples, ends_between, .. } => *ends_between && k == *multiples,
+            Grid::Multiples { ends_between, .. } => *ends_between && k + 1 == self.len(),
             Grid::At(_) => false,
         }
     }
@@ -177,6 +255,66 @@ mod tests {
         for (own, multiple) in [(0, 1), (1, 3333)] {
             let apart = by_times.time::<F256>(own) - by_grid.time::<F256>(multiple);
             assert!(apart.abs() < F256::from_f64(1e-70), "{own}: {apart:?}");
+        }
+    }
+
+    fn window([from, to, interval]: [&str; 3]) -> SampleWindow {
+        let [from, to, interval] = [from, to, interval].map(|text| Decimal::new(text).unwrap());
+        SampleWindow { from, to, interval }
+    }
+
+    fn windowed(duration: &str, interval: &str, windows: &[[&str; 3]]) -> Schedule {
+        let windows: Vec<_> = windows.iter().map(|texts| window(*texts)).collect();
+        let [duration, interval] = [duration, interval].map(|text| Decimal::new(text).unwrap());
+        Schedule::with_windows(&duration, &interval, &windows)
+    }
+
+    fn times(schedule: &Schedule) -> Vec<f64> {
+        (0..schedule.len()).map(|k| schedule.time(k)).collect()
+    }
+
+    #[test]
+    fn a_window_has_the_multiples_of_its_own_interval() {
+        let schedule = windowed("0.5", "0.1", &[["0.3", "0.34", "0.02"], ["0.1", "0.2", "0.05"]]);
+        let expected = [0.0, 0.1, 0.15, 0.2, 0.3, 0.32, 0.34, 0.4, 0.5];
+        assert_eq!(times(&schedule), expected);
+        // multiples of the window that its ends are none of
+        let askew = windowed("0.3", "0.1", &[["0.11", "0.2", "0.03"]]);
+        assert_eq!(times(&askew), [0.0, 0.1, 0.12, 0.15, 0.18, 0.2, 0.3]);
+        // nothing in it, and the whole run
+        assert_eq!(times(&windowed("0.2", "0.1", &[["0.11", "0.12", "0.1"]])), [0.0, 0.1, 0.2]);
+        assert_eq!(times(&windowed("0.2", "1", &[["0", "0.2", "0.1"]])), [0.0, 0.1, 0.2]);
+    }
+
+    #[test]
+    fn windows_end_with_the_run_and_go_on_in_a_longer_one() {
+        let windows = [["0.1", "0.4", "0.03"], ["0.9", "1", "0.001"]];
+        let short = windowed("0.25", "0.1", &windows);
+        assert_eq!(times(&short), [0.0, 0.1, 0.12, 0.15, 0.18, 0.21, 0.24, 0.25]);
+        assert!(short.is_only_of_the_end(7));
+        let long = times(&windowed("0.5", "0.1", &windows));
+        assert_eq!(long[..7], times(&short)[..7]);
+        assert_eq!(long[7..], [0.27, 0.3, 0.33, 0.36, 0.39, 0.4, 0.5]);
+    }
+
+    #[test]
+    fn sample_times_in_windows_are_rounded_decimals_that_increase() {
+        for (intervals, window) in [
+            ("1e-5", ["0.012", "0.013", "1e-7"]),
+            ("1e-5", ["0.0120000001", "0.0129999", "3.3e-7"]),
+            ("0.09999999999999999999", ["0.1", "0.2", "0.01"]),
+        ] {
+            let schedule = windowed("0.3", intervals, &[window]);
+            let times = times(&schedule);
+            assert!(times.windows(2).all(|pair| pair[0] < pair[1]), "{window:?}");
+            for k in 0..schedule.len() {
+                assert_eq!(schedule.time::<F256>(k).to_f64(), schedule.time::<f64>(k));
+            }
+        }
+        let schedule = windowed("0.06", "1e-5", &[["0.012", "0.013", "1e-7"]]);
+        assert_eq!(schedule.len(), 6001 + 9900);
+        for (k, literal) in [(1199, 0.01199), (1201, 0.0120001), (1203, 0.0120003)] {
+            assert_eq!(schedule.time::<f64>(k), literal);
         }
     }
 

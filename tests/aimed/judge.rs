@@ -6,7 +6,7 @@ use freeplay::case::{Case, Changes};
 use freeplay::certify::{self, Error, Reference, Stage};
 use freeplay::digits::digits;
 use freeplay::mechanism::Observation;
-use freeplay::run::{EventKind, Progress, Schedule};
+use freeplay::run::{EventKind, Progress};
 use freeplay::scalar::{F256, Scalar};
 use freeplay::simulate::Simulation;
 use nix::sys::resource::{UsageWho, getrusage};
@@ -88,7 +88,7 @@ fn certify(text: &str) -> Came {
         Err(words) if words.contains("dead centre") => None,
         Err(words) => return Came::NoCase(words),
     };
-    let schedule = Schedule::new(&case.plan.duration, &case.plan.sample_interval);
+    let schedule = case.plan.schedule();
     let began = cpu();
     let late = || match cpu() - began > TOO_LONG {
         true => ControlFlow::Break(()),

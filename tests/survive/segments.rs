@@ -11,8 +11,16 @@ use std::time::Duration;
 
 /// Cases that differ in what goes on over a checkpoint: engine, friction, adaptive sampling, open
 /// contacts, arithmetic, no freedom, and more rows than a block has.
-const CASES: [(&str, &[&str]); 7] = [
+const CASES: [(&str, &[&str]); 8] = [
     ("four-bar-a", &["run.sample_interval=2e-6"]),
+    (
+        "four-bar-a",
+        &[
+            "run.sampling=adaptive",
+            // checkpoints fall inside of the first and on ends of the second
+            "run.window=[{from=2.5e-3,to=4.5e-3,interval=7e-7},{from=6e-3,to=7e-3,interval=1e-6}]",
+        ],
+    ),
     ("four-bar-a-friction", &["run.sampling=adaptive"]),
     ("four-bar-c", &["solver.engine=explicit", "run.sampling=adaptive"]),
     ("four-bar-b", &["solver.engine=explicit"]),

@@ -375,6 +375,31 @@ const BAD: &[(&str, &str, &str)] = &[
         "sample_interval = -1",
         "run.sample_interval: must be positive (s), is -1",
     ),
+    (
+        "sample_interval = 1e-5",
+        "sample_interval = 1e-5\nwindow = 3",
+        "run.window: must be a list of tables [[run.window]], is a number",
+    ),
+    (
+        "sample_interval = 1e-5",
+        "sample_interval = 1e-5\nwindow = [{ from = 0.01, too = 0.02, to = 0.02, interval = 1e-7 }]",
+        "run.window.1.too: unknown key (did you mean \"to\"?)",
+    ),
+    (
+        "sample_interval = 1e-5",
+        "sample_interval = 1e-5\nwindow = [{ from = 0.02, to = 0.02, interval = 1e-7 }]",
+        "run.window.1.to: must be greater than from, 0.02 (s), is 0.02",
+    ),
+    (
+        "sample_interval = 1e-5",
+        "sample_interval = 1e-5\nwindow = [{ from = 0.01, to = 0.02, interval = 1e-4 }]",
+        "run.window.1.interval: must be at most run.sample_interval, 1e-5 (s), is 1e-4",
+    ),
+    (
+        "sample_interval = 1e-5",
+        "sample_interval = 1e-5\nwindow = [{ from = 0.01, to = 0.02, interval = 1e-13 }]",
+        "run.window: have 1.000e11 rows of samples together, at most 1e8 are written",
+    ),
     ("duration        = 0.060", "revolutions = 0", "run.revolutions: must be positive, is 0"),
     (
         "duration        = 0.060",
@@ -504,4 +529,25 @@ fn later_complaints_find_their_lines() {
     let error = case.reject(vec![complaint]).to_string();
     let line = line_of("speed_rpm");
     assert!(error.ends_with(&format!("  line {line}, drives.crank.speed_rpm: does not fit")));
+}
+
+#[test]
+fn complaints_about_windows_tell_the_line_of_theirs() {
+    let window = |from: &str, to: &str| {
+        format!("[[run.window]]\nfrom = {from}\nto = {to}\ninterval = 1e-7\n")
+    };
+    let windows = format!("{}{}[solver]", window("0.01", "0.02"), window("0.015", "-1"));
+    let line = line_of("[solver]");
+    assert_eq!(
+        complaints_after("[solver]", &windows),
+        [format!(
+            "line {}, run.window.2.to: must be greater than from, 0.015 (s), is -1",
+            line + 6
+        )]
+    );
+    let windows = format!("{}{}[solver]", window("0.01", "0.02"), window("0.015", "0.03"));
+    let apart = "overlaps window 1 (from 0.01 to 0.02 s): windows must be apart";
+    let told = complaints_after("[solver]", &windows);
+    assert_eq!(told.len(), 1);
+    assert!(told[0].ends_with(&format!("run.window.2: {apart}")), "{told:?}");
 }
