@@ -85,6 +85,11 @@ pub enum Takes {
     NumberOr(Range, &'static [&'static str]),
     /// A number for both materials that touch, or two, the bearing's first.
     OfMaterials(Range),
+    /// Numbers.
+    Numbers,
+    /// Name of a file beside the case, with a column for each key of the kind that takes numbers, in
+    /// their order. What it holds stands in the case as run, in its place.
+    File,
 }
 
 /// Numbers that a key takes; all of them are finite. Of a vector they are its length.
@@ -161,6 +166,8 @@ pub enum Value {
     Course(Box<Values>),
     /// A constant of the bearing's and of the journal's material.
     Materials([Decimal; 2]),
+    /// Any number of numbers.
+    Numbers(Vec<Decimal>),
 }
 
 /// The kind of a part and the values of its keys.
@@ -251,6 +258,14 @@ impl Values {
         }
     }
 
+    /// The numbers of a key; none of a key that takes none.
+    pub fn numbers(&self, key: &str) -> &[Decimal] {
+        match self.get(key) {
+            Some(Value::Numbers(numbers)) => numbers,
+            _ => &[],
+        }
+    }
+
     /// The course of a key.
     pub fn course(&self, key: &str) -> Option<&Values> {
         match self.get(key) {
@@ -267,14 +282,14 @@ pub fn in_brackets(unit: &str) -> String {
 
 /// The list of the kinds of a family of parts, one line a kind: the type that holds any of them,
 /// the table of their keys, how each is made, and a macro that does the same with each. A line may
-/// stand under an attribute (`#[cfg(test)]`).
+/// stand under an attribute (`#[cfg(test)]`); so may the whole (`#[derive(Copy)]`).
 macro_rules! kinds {
     ($d:tt $(#[$about:meta])* $any:ident, $each:ident:
      $($(#[$when:meta])? $name:ident in $file:ident,)+) => {
         $($(#[$when])? mod $file; $(#[$when])? pub use $file::$name;)+
 
         $(#[$about])*
-        #[derive(Debug, Clone, Copy)]
+        #[derive(Debug, Clone)]
         pub enum $any<S> {
             $($(#[$when])? #[doc = concat!("See [`", stringify!($name), "`].")] $name($name<S>),)+
         }

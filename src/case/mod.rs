@@ -5,6 +5,7 @@
 
 mod changes;
 mod error;
+mod files;
 mod mechanism;
 mod plan;
 mod schema;
@@ -89,6 +90,7 @@ impl Case {
         findings.add_checks(check(&description));
         findings.add_checks(plan.settle(&description).into_iter().collect());
         findings.add_checks(plan.check());
+        findings.add_checks(plan.check_tables(&description));
         let (complaints, defaults) = findings.into_parts();
         if !complaints.is_empty() {
             return Err(source.reject(complaints));
@@ -125,12 +127,17 @@ impl Template {
     /// # Errors
     /// The text is not TOML.
     pub fn new(path: &Path, text: &str) -> Result<Self, Error> {
-        let document = source::parse(path, text)?;
+        let mut document = source::parse(path, text)?;
         let source = Source::new(path, text)?;
-        Ok(Template { path: path.to_owned(), text: text.to_owned(), document, source })
+        let text = match files::take_in(path, &mut document) {
+            Ok(true) => document.to_string(),
+            Ok(false) => text.to_owned(),
+            Err(complaints) => return Err(source.reject(complaints)),
+        };
+        Ok(Template { path: path.to_owned(), text, document, source })
     }
 
-    /// The text as it stands in the file.
+    /// The text as it stands in the file, with the numbers of files that belong to it.
     pub fn text(&self) -> &str {
         &self.text
     }
@@ -144,7 +151,8 @@ impl Template {
             return Ok(self.text.clone());
         }
         let mut document = self.document.clone();
-        let complaints = changes.apply(&mut document);
+        let mut complaints = changes.apply(&mut document);
+        complaints.extend(files::take_in(&self.path, &mut document).err().into_iter().flatten());
         if !complaints.is_empty() {
             return Err(self.source.overridden(&changes.set).reject(complaints));
         }

@@ -1,7 +1,7 @@
 //! How long a case runs, what it samples, and how it is solved.
 
 use super::table_reader::TableReader;
-use crate::course::Course;
+use crate::course::{self, Course};
 use crate::model::{Complaint, Complaints, Description, KeyPath};
 use crate::run::{SampleWindow, Schedule};
 use crate::scalar::{Decimal, F256, Scalar};
@@ -204,6 +204,27 @@ impl Plan {
         }
         self.solver.check_tolerances(&mut complaints);
         self.solver.check_steps(&mut complaints, self.first_sample());
+        complaints.into_vec()
+    }
+
+    /// What drives prescribe by tables is there for the whole run.
+    pub(super) fn check_tables(&self, description: &Description) -> Vec<Complaint> {
+        let mut complaints = Complaints::default();
+        let end: F256 = self.duration.value();
+        let tables = description.drives.iter().filter(|drive| drive.part.is(course::TABLE));
+        for drive in tables {
+            let times = drive.part.numbers("times");
+            let [Some(first), Some(last)] = [times.first(), times.last()] else { continue };
+            let key = KeyPath::new(["drives", &drive.name, "times"]);
+            if first.value::<F256>() > F256::from(0) {
+                let message = format!("begin at {first} s: a drive needs values from t = 0 on");
+                complaints.add(key, message);
+            } else if end > last.value() {
+                let run = format!("the run ends at {} s", self.duration);
+                let message = format!("end at {last} s, and {run}: a drive needs values until then");
+                complaints.add(key, message);
+            }
+        }
         complaints.into_vec()
     }
 

@@ -140,6 +140,8 @@ fn value(key: &Key) -> Value {
         Takes::NumberOr(range, words) => {
             json!({ "oneOf": [number(range), { "type": "string", "enum": words }] })
         }
+        Takes::Numbers => json!({ "type": "array", "items": { "type": "number" }, "minItems": 2 }),
+        Takes::File => json!({ "type": "string" }),
         Takes::OfMaterials(range) => json!({ "oneOf": [number(range), pair("number")] }),
     };
     let unit = if key.unit.is_empty() { String::new() } else { format!(" ({})", key.unit) };
@@ -281,6 +283,7 @@ fn takes(value: &Value) -> String {
         Some("number") => format!("number{}", limits(value)),
         Some("boolean") => "`true` or `false`".into(),
         Some("array") if value["items"]["$ref"].is_string() => "tables".into(),
+        Some("array") if value["maxItems"].is_null() => "numbers".into(),
         Some("array") => format!("two {}s", value["items"]["type"].as_str().unwrap_or("value")),
         Some("object") => "table".into(),
         other => other.unwrap_or_default().to_owned(),

@@ -93,6 +93,18 @@ impl FromItem for OfMaterials {
     }
 }
 
+impl FromItem for Vec<Decimal> {
+    const EXPECTED: &'static str = "an array of numbers";
+
+    fn from_item(item: &Item) -> Option<Self> {
+        item.as_array()?.iter().map(number).collect()
+    }
+
+    fn placeholder() -> Self {
+        Vec::new()
+    }
+}
+
 impl FromItem for String {
     const EXPECTED: &'static str = "a string";
 
@@ -422,6 +434,8 @@ impl<'d> TableReader<'d, '_> {
                 let read = self.number_or_choice(name, unit, &words, None, number);
                 read.unwrap_or_else(|| parameter::Value::Text(String::new()))
             }
+            Takes::Numbers => parameter::Value::Numbers(self.required(name, unit)),
+            Takes::File => parameter::Value::Text(self.required(name, "")),
             Takes::OfMaterials(_) => {
                 parameter::Value::Materials(self.required::<OfMaterials>(name, unit).0)
             }

@@ -11,19 +11,28 @@ kinds! { $
     Speed in speed,
     Ramp in ramp,
     Harmonic in harmonic,
+    Table in table,
     #[cfg(test)]
     Scratch in scratch,
 }
 
+mod spline;
+
+pub use spline::Spline;
+pub(crate) use spline::points;
+
 /// The kind that a plain number stands for.
 pub const CONSTANT: &Kind = &constant::KIND;
+
+/// The word of the kind that goes through given values.
+pub const TABLE: &str = table::KIND.word;
 
 /// What a course is made of beside its values: nothing.
 #[derive(Debug, Clone, Copy)]
 pub struct Ends<S>(std::marker::PhantomData<S>);
 
 /// A function of time f(t).
-pub trait Law<S: Scalar>: Copy {
+pub trait Law<S: Scalar>: Clone {
     /// f(t), ḟ(t) and f̈(t) (units of f, per s, per s²).
     fn at(&self, time: S) -> [S; 3];
 
@@ -50,9 +59,16 @@ pub trait Law<S: Scalar>: Copy {
         self.period()
     }
 
-    /// A time (s) at which a derivative of f jumps; the engines begin anew there.
-    fn corner(&self) -> Option<S> {
-        None
+    /// Times (s) at which a derivative of f jumps, in their order; the engines begin anew there.
+    fn corners(&self) -> &[S] {
+        &[]
+    }
+
+    /// The largest |f| of the first period, or of the first second.
+    fn size(&self) -> f64 {
+        let span = self.period().unwrap_or(1.0);
+        let at = |k: i32| self.at(S::from_f64(span * f64::from(k) / 16.0))[0].to_f64().abs();
+        (0..=16).map(at).fold(0.0, f64::max)
     }
 }
 
@@ -73,11 +89,9 @@ impl<S: Scalar> Course<S> {
         Course::Constant(Constant::always(value))
     }
 
-    /// The largest |f| of the first period, or of the first second.
+    /// The largest |f|, or an estimate of it.
     pub fn size(&self) -> f64 {
-        let span = self.period().unwrap_or(1.0);
-        let at = |k: i32| self.at(S::from_f64(span * f64::from(k) / 16.0))[0].to_f64().abs();
-        (0..=16).map(at).fold(0.0, f64::max)
+        each_course!(self, law => law.size())
     }
 
     /// f(t), ḟ(t) and f̈(t).
@@ -123,9 +137,9 @@ impl<S: Scalar> Course<S> {
         self.accelerates().then(|| self.period().map(|period| std::f64::consts::TAU / period))?
     }
 
-    /// A time (s) at which a derivative of f jumps.
-    pub fn corner(&self) -> Option<S> {
-        each_course!(self, law => law.corner())
+    /// Times (s) at which a derivative of f jumps, in their order.
+    pub fn corners(&self) -> &[S] {
+        each_course!(self, law => law.corners())
     }
 }
 

@@ -72,7 +72,7 @@ impl<S: Scalar> Law<S> for Ramp<S> {
         turn(self.speed.rate.to_f64()).map(|turn| self.time.to_f64() + turn)
     }
 
-    fn corner(&self) -> Option<S> {
-        Some(self.time)
+    fn corners(&self) -> &[S] {
+        std::slice::from_ref(&self.time)
     }
 }

@@ -17,6 +17,7 @@ pub use ambrosio::Ramp;
 
 kinds! { $
     /// A friction law of any kind.
+    #[derive(Copy)]
     Friction, each_friction:
     Ambrosio in ambrosio,
     Dahl in dahl,

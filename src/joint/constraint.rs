@@ -6,7 +6,7 @@ use crate::plane::{Motion, Pose, Vector, Wrench};
 use crate::scalar::Scalar;
 
 /// A constraint; its rows stand in the order of its position error.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub enum Constraint<S> {
     /// Two points stay together; written by hand.
     Revolute(Revolute<S>),

@@ -10,13 +10,13 @@ use crate::plane::{Motion, Pose, Vector};
 use crate::scalar::{Dual, Lift, Scalar};
 
 /// A joint by its Φ alone, or a drive of a travel; and where it sits.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub struct Derived<S> {
     ends: Ends<S>,
     says: Says<S>,
 }
 
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 enum Says<S> {
     Joint(Relation<S>),
     Travel(Travel<S>),

@@ -14,7 +14,7 @@ use crate::scalar::Scalar;
 
 /// A drive of an angle: two bodies and the course of the angle (rad) of the second relative to the
 /// first.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub struct AngleDrive<S> {
     /// Index of the first body.
     pub i: usize,
@@ -25,7 +25,7 @@ pub struct AngleDrive<S> {
 }
 
 /// A drive of a travel: the slide, and the course of its travel (m).
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub struct Travel<S> {
     /// What it drives.
     pub slide: Prismatic<S>,

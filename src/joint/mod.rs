@@ -22,6 +22,7 @@ use crate::scalar::{Lift, Scalar};
 
 kinds! { $
     /// A joint of any kind.
+    #[derive(Copy)]
     Relation, each_relation:
     Revolute in revolute,
     Prismatic in prismatic,

@@ -43,7 +43,7 @@ fn one_of_two(values: &Values) -> Vec<(&'static str, String)> {
 }
 
 /// The force: its point on the second body, a direction, and the magnitude along it (N).
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub struct Force<S> {
     at: Vector<S>,
     direction: Vector<S>,

@@ -43,7 +43,7 @@ pub struct Powers<S> {
 }
 
 /// What a load does to its two bodies.
-pub trait Acts<S: Scalar>: Copy {
+pub trait Acts<S: Scalar>: Clone {
     /// What it puts on first and second body (N, N m), where they stand and move so.
     fn wrenches<T: Lift<S>>(
         &self,
@@ -79,7 +79,7 @@ pub trait Acts<S: Scalar>: Copy {
 }
 
 /// A load of a model.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub struct Load<S> {
     law: Law<S>,
     bodies: [usize; 2],

@@ -27,7 +27,7 @@ torque = 0.033"#,
 };
 
 /// The torque (N m) on the second body.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub struct Torque<S>(Course<S>);
 
 impl<S: Scalar> Torque<S> {

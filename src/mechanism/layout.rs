@@ -43,7 +43,7 @@ pub(super) enum Origin {
 }
 
 /// A constraint and the place of its rows among the multipliers.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub(super) struct Row<S> {
     pub constraint: Constraint<S>,
     pub first: usize,
@@ -257,7 +257,7 @@ fn equations<S: Scalar>(model: &Model<S>, driven: &[DrivenBody]) -> Vec<(Constra
         .filter(|(index, _)| driven.iter().all(|driven| driven.drive != *index));
     let driving = |(index, drive): (usize, &crate::model::Drive<S>)| {
         let joint = &model.joints()[drive.joint];
-        let (course, Pair { i, j, .. }) = (drive.course, joint.ends.pair);
+        let (course, Pair { i, j, .. }) = (drive.course.clone(), joint.ends.pair);
         let constraint = match joint.relation {
             Relation::Prismatic(slide) => {
                 Constraint::Derived(Derived::travel(Travel { slide, course }, &joint.ends))

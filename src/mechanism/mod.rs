@@ -207,9 +207,10 @@ impl<S: Scalar> Mechanism<S> {
     /// Times (s) at which a derivative of what is prescribed jumps, in their order: engines begin
     /// anew there.
     pub fn corners(&self) -> Vec<S> {
-        let drives = self.model.drives().iter().filter_map(|drive| drive.course.corner());
-        let loads = self.model.loads().iter().filter_map(|load| load.course()?.corner());
-        let mut corners: Vec<S> = drives.chain(loads).collect();
+        let drives = self.model.drives().iter().map(|drive| &drive.course);
+        let loads = self.model.loads().iter().filter_map(|load| load.course());
+        let courses = drives.chain(loads);
+        let mut corners: Vec<S> = courses.flat_map(|course| course.corners()).copied().collect();
         corners.sort_by(|a, b| a.partial_cmp(b).unwrap_or(std::cmp::Ordering::Equal));
         corners.dedup();
         corners

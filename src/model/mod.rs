@@ -37,7 +37,7 @@ pub struct Joint<S> {
 }
 
 /// A drive of a model.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub struct Drive<S> {
     /// Index of the joint it sits on.
     pub joint: usize,

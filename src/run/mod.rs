@@ -327,7 +327,8 @@ where
         let corners = self.engine.system().corners();
         while self.engine.now().time < end {
             let before = self.engine.now().time;
-            let corner = corners.iter().copied().find(|corner| *corner > before && *corner < end);
+            let corner = corners[corners.partition_point(|corner| *corner <= before)..].first();
+            let corner = corner.copied().filter(|corner| *corner < end);
             let until = corner.unwrap_or(end);
             let advance = self.engine.step(until).map_err(|source| self.stopped(source))?;
             if self.engine.now().time < before {

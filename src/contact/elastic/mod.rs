@@ -15,6 +15,7 @@ use crate::scalar::Scalar;
 
 kinds! { $
     /// An elastic law of any kind.
+    #[derive(Copy)]
     Elastic, each_elastic:
     Power in power,
     Johnson in johnson,

@@ -21,6 +21,7 @@ use crate::scalar::Scalar;
 
 kinds! { $
     /// A law of viscous damping of any kind.
+    #[derive(Copy)]
     Viscous, each_viscous:
     KelvinVoigt in kelvin_voigt,
     Tsuji in tsuji,
