@@ -85,6 +85,10 @@ pub enum Takes {
     NumberOr(Range, &'static [&'static str]),
     /// A number for both materials that touch, or two, the bearing's first.
     OfMaterials(Range),
+    /// A joint of one of these kinds.
+    Joint(&'static [&'static str]),
+    /// A table with the `law` of a friction and its keys.
+    Friction,
     /// Numbers.
     Numbers,
     /// Name of a file beside the case, with a column for each key of the kind that takes numbers, in
@@ -162,8 +166,8 @@ pub enum Value {
     Text(String),
     /// Two names.
     Pair([String; 2]),
-    /// A course of time.
-    Course(Box<Values>),
+    /// A part of a part: a course of time, a law of friction.
+    Part(Box<Values>),
     /// A constant of the bearing's and of the journal's material.
     Materials([Decimal; 2]),
     /// Any number of numbers.
@@ -266,10 +270,10 @@ impl Values {
         }
     }
 
-    /// The course of a key.
-    pub fn course(&self, key: &str) -> Option<&Values> {
+    /// The part that is the value of a key: a course, a law of friction.
+    pub fn part(&self, key: &str) -> Option<&Values> {
         match self.get(key) {
-            Some(Value::Course(course)) => Some(course),
+            Some(Value::Part(part)) => Some(part),
             _ => None,
         }
     }

@@ -1,11 +1,13 @@
 //! From a checked case to a finished run: which arithmetic, which engine, which loop.
 
 use crate::case::{self, Case, Changes, EngineName, NormName, Precision, SolverPlan};
+use crate::contact::depth_under;
 use crate::dae::{Count, Engine};
 use crate::engine::explicit::{self, Explicit};
 use crate::engine::ida::{self, Ida};
-use crate::mechanism::{BodyObservation, Mechanism};
-use crate::model::{Complaint, Complaints, KeyPath, Model};
+use crate::mechanism::{BodyObservation, JointObservation, Mechanism};
+use crate::model::{Complaint, Complaints, Joint, Journals, KeyPath, Model};
+use crate::plane::Vector;
 use crate::record::{Attribute, Header};
 use crate::run::{
     self, Checkpoint, Checkpoints, Kept, Reached, Recorder, RulingCounts, Schedule, Stretch,
@@ -196,7 +198,36 @@ pub type Ran<R> = (Statistics, Result<(), Error<<R as Recorder>::Error>>);
 /// Complaints about the mechanism, with the lines of the case file.
 pub fn assemble<S: Scalar>(case: &Case) -> Result<Mechanism<S>, case::Error> {
     let model = Model::new(&case.description).map_err(|complaints| case.reject(complaints))?;
-    Mechanism::new(model).map_err(|complaints| case.reject(complaints))
+    let offsets = match case.description.journals {
+        Journals::Centred => Vec::new(),
+        journals => offsets_under_load(case, journals)?,
+    };
+    Mechanism::with_journals_at(model, &offsets).map_err(|complaints| case.reject(complaints))
+}
+
+/// Where in their bearings journals lie under the forces of the ideal mechanism at t = 0 (m): opposite
+/// to the force on each, c deep, or as much deeper as bears it. One that bears nothing is centred.
+/// Doubles in any arithmetic, so that it is the same start.
+fn offsets_under_load(case: &Case, journals: Journals) -> Result<Vec<Vector<f64>>, case::Error> {
+    if case.description.joints.iter().all(|joint| joint.clearance.is_none()) {
+        return Ok(Vec::new());
+    }
+    let ideal = assemble::<f64>(&ideal_case(case)?)?;
+    let observed = ideal.observe(0.0, &ideal.start().integrals);
+    let model = Model::<f64>::new(&case.description).map_err(|told| case.reject(told))?;
+    let loose = model.joints().iter().zip(&observed.joints);
+    let offset = |(joint, observed): (&Joint<f64>, &JointObservation)| {
+        let clearance = &model.clearances()[joint.clearance?];
+        let force = Vector::new(observed.force[0], observed.force[1]);
+        let size = force.norm();
+        let depth = match journals {
+            Journals::Pressed => depth_under(clearance.normal.elastic(), size),
+            Journals::Touching | Journals::Centred => 0.0,
+        };
+        let none = size == 0.0;
+        Some(if none { Vector::zero() } else { force * (-(clearance.radial + depth) / size) })
+    };
+    Ok(loose.filter_map(offset).collect())
 }
 
 /// A case without its clearances, in doubles. A start that is fixed and goes together with

@@ -412,7 +412,8 @@ fn what_does_not_belong_to_a_kind_is_told_with_its_key() {
 #[test]
 fn windows_of_samples_show_the_same_run() {
     let wrist = "tests/kinds/slider-crank-wrist-pin.toml";
-    let window = "run.window=[{from=0.0011,to=0.0013,interval=1e-7},{from=0.002,to=0.0021,interval=3e-7}]";
+    let window =
+        "run.window=[{from=0.0011,to=0.0013,interval=1e-7},{from=0.002,to=0.0021,interval=3e-7}]";
     for engine in ENGINES {
         let set = [engine, "run.duration=0.003", "run.sample_interval=1e-5"];
         let plain = simulate(&case(wrist, &set));
@@ -433,5 +434,318 @@ fn windows_of_samples_show_the_same_run() {
                 assert_eq!(windowed.samples.len(), 301 + 2001 - 21 + 334 - 11 + 1);
             }
         }
+    }
+}
+
+/// Numbers as an array of TOML.
+fn array(numbers: impl Iterator<Item = f64>) -> String {
+    format!("[{}]", numbers.map(|x| format!("{x:?}")).collect::<Vec<_>>().join(", "))
+}
+
+const INERTIA: f64 = 0.015 + 0.5 * 0.09;
+
+#[test]
+fn a_crank_that_follows_a_table_has_the_torque_of_newton_and_euler() {
+    // a polynomial of the fifth degree is its own spline
+    let angle = |t: f64| 0.3 + t * (2.0 + t * (-3.0 + t * (10.0 + t * (-30.0 + t * 24.0))));
+    let rate = |t: f64| 2.0 + t * (-6.0 + t * (30.0 + t * (-120.0 + t * 120.0)));
+    let bend = |t: f64| -6.0 + t * (60.0 + t * (-360.0 + t * 480.0));
+    let times = || (0..=13).map(|k| -0.05 + 0.6 * f64::from(k) / 13.0);
+    let drive = format!(
+        "{PIVOT}[drives.d]\njoint = \"O\"\nkind = \"table\"\ntimes = {}\nvalues = {}\n",
+        array(times()),
+        array(times().map(angle))
+    );
+    for kept in runs(&drive) {
+        assert_is(&kept, "angle", |s| body(s, 0).angle, angle);
+        assert_is(&kept, "rate", |s| body(s, 0).angular_velocity, rate);
+        assert_is(&kept, "torque", |s| s.drive_torques[0], |t| INERTIA * bend(t));
+        assert_is(&kept, "balance", |s| s.energy.residual, |_| 0.0);
+    }
+}
+
+#[test]
+fn a_torque_by_a_table_keeps_its_ends() {
+    // 0.4 until 0.1 s, then a line to −0.2 at 0.3 s
+    let load = "[loads.m]\nkind = \"torque\"\nbody = \"rod\"\n\
+        torque = { kind = \"table\", times = [0.1, 0.3], values = [0.4, -0.2] }\n\
+        [start]\nrod = { angle = 0.0, fixed = true }\n";
+    let gone = |t: f64| [t - 0.1, t - 0.3].map(|t| t.max(0.0));
+    let rate = |t: f64| {
+        let [from, to] = gone(t);
+        (0.4 * t - 1.5 * (from.powi(2) - to.powi(2))) / INERTIA
+    };
+    let angle = |t: f64| {
+        let [from, to] = gone(t);
+        (0.2 * t * t - 0.5 * (from.powi(3) - to.powi(3))) / INERTIA
+    };
+    for kept in runs(&format!("{PIVOT}{load}")) {
+        assert_is(&kept, "rate", |s| body(s, 0).angular_velocity, rate);
+        assert_is(&kept, "angle", |s| body(s, 0).angle, angle);
+        assert_is(&kept, "work", |s| s.energy.load_work, |t| 0.5 * INERTIA * rate(t).powi(2));
+    }
+    let octuple = [
+        ENGINES[0],
+        "solver.precision=71",
+        "solver.reference_tolerance=1e-40",
+        "run.sample_interval=0.1",
+    ];
+    let exact = simulate(&case_of(&with_body(&format!("{PIVOT}{load}")), &octuple));
+    let off = body(exact.last(), 0).angle / angle(0.5) - 1.0;
+    assert!(off.abs() < 1e-15, "{off:e}");
+}
+
+#[test]
+fn a_table_stands_in_a_file_beside_the_case_or_in_the_case() {
+    let folder = tempfile::tempdir().unwrap();
+    let beside = |name: &str, text: &str| {
+        let path = folder.path().join(name);
+        std::fs::write(&path, text).unwrap();
+        path
+    };
+    let text = with_body(&format!(
+        "{PIVOT}[drives.d]\njoint = \"O\"\nkind = \"table\"\nfile = \"motion.csv\"\n"
+    ));
+    let path = beside("case.toml", &text);
+    let read = |set: &[&str]| {
+        let set = set.iter().map(|change| change.parse().unwrap()).collect();
+        freeplay::case::Case::read(&path, &freeplay::case::Changes { set, ideal: false })
+    };
+    let told = || read(&[]).unwrap_err().to_string();
+    assert!(told().contains("drives.d.file: cannot read"), "{}", told());
+    for (wrong, words) in [
+        ("0, 1\n2, x\n", "drives.d.file: line 2 of motion.csv must be 2 numbers, times and values"),
+        ("t, f\n0, 1\n# none\n1; 2; 3\n", "line 4 of motion.csv"),
+        ("0, 1\n1, 2\n0.5, 1\n", "drives.d.times: must increase, number 3 is 0.5"),
+        ("0, 1\n", "drives.d.times: must be two or more, are 1"),
+        ("0, 0\n0.2, 1\n", "drives.d.times: end at 0.2 s, and the run ends at 0.5 s"),
+        ("0.1, 0\n0.7, 1\n", "drives.d.times: begin at 0.1 s"),
+    ] {
+        beside("motion.csv", wrong);
+        assert!(told().contains(words), "{wrong:?}: {}", told());
+    }
+    beside(
+        "motion.csv",
+        "time,angle\n# s, rad\n0,.5\n +0.25 ; 1.\n\n1e0\t2.000000000000000000001\n",
+    );
+    let case = read(&[]).unwrap();
+    assert!(case.text.contains("2.000000000000000000001") && !case.text.contains("motion.csv"));
+    // what was run needs no file
+    let again = case_of(&case.text, &[]);
+    assert_eq!(again.description, case.description);
+    beside("other.csv", "0 0\n1 3\n");
+    let other = simulate(&read(&["drives.d.file=other.csv"]).unwrap());
+    assert_is(&other, "angle", |s| body(s, 0).angle, |t| 3.0 * t);
+    beside("case.toml", &text.replace("file =", "times = [0, 1]\nfile ="));
+    assert!(told().contains("drives.d.file: times are given too"), "{}", told());
+}
+
+/// The rod's centre on a pin of 20 mm, and friction there.
+fn rubbing(joint: &str, friction: &str) -> String {
+    format!(
+        "[joints.O]\nkind = \"revolute\"\nbetween = [\"ground.O\", \"rod.{joint}\"]\n\
+         [loads.rub]\nkind = \"joint-friction\"\njoint = \"O\"\npin_radius = 0.02\n{friction}\n"
+    )
+}
+
+const DRY: &str = "friction = { law = \"tanh\", coefficient = 0.1, transition = 1e-3 }";
+
+#[test]
+fn a_rotor_on_a_dry_pin_slows_down_evenly() {
+    for (preload, extra) in [(0.0, ""), (3.0, "preload = 3.0")] {
+        let start = "[start]\nrod = { angle = 0.0, angular_velocity = 20.0, fixed = true }\n";
+        let text = format!("{}{GRAVITY}{start}", rubbing("C", &format!("{DRY}\n{extra}")));
+        let normal = (0.5_f64 * 9.81).hypot(preload);
+        let rate = |t: f64| 20.0 - 0.1 * 0.02 * normal / 0.015 * t;
+        for kept in runs(&text) {
+            assert_is(&kept, "rate", |s| body(s, 0).angular_velocity, rate);
+            let lost = |t: f64| 0.5 * 0.015 * (400.0 - rate(t).powi(2));
+            assert_is(&kept, "dissipated", |s| s.energy.dissipated, lost);
+            assert_is(&kept, "balance", |s| s.energy.residual, |_| 0.0);
+            // the friction is no force of the joint
+            assert_is(&kept, "moment", |s| s.joints[0].moment, |_| 0.0);
+        }
+    }
+}
+
+#[test]
+fn friction_that_makes_the_force_which_makes_it_is_solved_with_it() {
+    // without weight: N = m a √(ω⁴ + ω̇²),  I ω̇ = −μ r N
+    let share = 0.1 * 0.02 * 0.5 * 0.3 / INERTIA;
+    let share = share / (1.0_f64 - share * share).sqrt();
+    let start = "[start]\nrod = { angle = 0.0, angular_velocity = 20.0, fixed = true }\n";
+    let text = format!("{}{start}", rubbing("O", DRY));
+    let rate = |t: f64| 20.0 / (1.0 + share * 20.0 * t);
+    for kept in runs(&text) {
+        assert_is(&kept, "rate", |s| body(s, 0).angular_velocity, rate);
+        let bend = |t: f64| -share * rate(t).powi(2);
+        assert_is(&kept, "acceleration", |s| body(s, 0).angular_acceleration, bend);
+        assert!(kept.largest(|s| s.energy.residual) < 1e-10 * 12.0);
+    }
+    let octuple = [ENGINES[0], "solver.precision=71", "solver.reference_tolerance=1e-40"];
+    let exact = simulate(&case_of(&with_body(&text), &octuple));
+    let off = body(exact.last(), 0).angular_velocity / rate(0.5) - 1.0;
+    assert!(off.abs() < 1e-15, "{off:e}");
+    // a drive bears the friction too: 2π rad/s, whatever the angle
+    let drive = "[drives.d]\njoint = \"O\"\nspeed_rpm = 60.0\n";
+    let turning = 2.0 * PI;
+    let normal = 0.5 * 0.3 * turning * turning;
+    for kept in runs(&format!("{}{drive}", rubbing("O", DRY))) {
+        assert_is(&kept, "torque", |s| s.drive_torques[0], |_| 0.1 * 0.02 * normal);
+        assert_is(&kept, "work", |s| s.energy.dissipated, |t| 0.1 * 0.02 * normal * turning * t);
+        assert_is(&kept, "balance", |s| s.energy.residual, |_| 0.0);
+    }
+    // and where it makes more force than bears it, it jams
+    let jammed = text.replace("pin_radius = 0.02", "pin_radius = 5.0");
+    for engine in ENGINES {
+        let case = case_of(&with_body(&jammed), &[engine]);
+        let told = freeplay::simulate::Simulation::new(&case).map(|_| ());
+        let told = told.map_err(|error| simulated::words(&error)).unwrap_err();
+        assert!(told.contains("jams"), "{told}");
+    }
+}
+
+#[test]
+fn a_block_on_an_incline_with_dry_friction_slides_evenly() {
+    let slide = "[joints.g]\nkind = \"prismatic\"\nbetween = [\"ground.O\", \"rod.C\"]\n\
+        axis = [4.0, -3.0]\n[loads.rub]\nkind = \"joint-friction\"\njoint = \"g\"\n\
+        friction = { law = \"tanh\", coefficient = 0.2, transition = 1e-3 }\n\
+        [start]\nrod = { x = 0.0, y = 0.0, velocity_x = 1.6, fixed = true }\n";
+    let pull = 9.81 * (0.6 - 0.2 * 0.8);
+    for kept in runs(&format!("{slide}{GRAVITY}")) {
+        assert_is(&kept, "x", |s| body(s, 0).position[0], |t| 0.8 * (2.0 * t + 0.5 * pull * t * t));
+        assert_is(&kept, "balance", |s| s.energy.residual, |_| 0.0);
+    }
+}
+
+#[test]
+fn a_controlled_speed_follows_its_linear_equation() {
+    let servo = "[joints.O]\nkind = \"revolute\"\nbetween = [\"ground.O\", \"rod.C\"]\n\
+        [loads.servo]\nkind = \"speed-controller\"\njoint = \"O\"\nspeed_rpm = 60.0\n\
+        proportional = 0.2\nintegral = 3.0\n[start]\nrod = { angle = 0.0, fixed = true }\n";
+    // e' = −(K_p e + K_i z)/I, z' = e
+    let (speed, decay) = (2.0 * PI, 0.5 * 0.2 / 0.015);
+    let swing = (3.0_f64 / 0.015 - decay * decay).sqrt();
+    let off = |t: f64| {
+        speed * (-decay * t).exp() * ((swing * t).cos() - decay / swing * (swing * t).sin())
+    };
+    for kept in runs(servo) {
+        assert_is(&kept, "rate", |s| body(s, 0).angular_velocity, |t| speed - off(t));
+        let energy = |t: f64| 0.5 * 0.015 * (speed - off(t)).powi(2);
+        assert_is(&kept, "work", |s| s.energy.load_work, energy);
+    }
+    let octuple = [ENGINES[0], "solver.precision=71", "solver.reference_tolerance=1e-40"];
+    let exact = simulate(&case_of(&with_body(servo), &octuple));
+    let apart = body(exact.last(), 0).angular_velocity / (speed - off(0.5)) - 1.0;
+    assert!(apart.abs() < 1e-15, "{apart:e}");
+    // with a limit and no integral: sinh(u/L) falls as an exponential
+    let limited = servo.replace("integral = 3.0", "limit = 0.1");
+    let left = |t: f64| {
+        let sinh = (0.2 * speed / 0.1).sinh() * (-0.2 / 0.015 * t).exp();
+        0.1 * sinh.asinh() / 0.2
+    };
+    for kept in runs(&limited) {
+        assert_is(&kept, "rate", |s| body(s, 0).angular_velocity, |t| speed - left(t));
+    }
+}
+
+#[test]
+fn a_piston_on_a_gas_whose_pressure_falls_evenly_swings() {
+    let gas = "[joints.g]\nkind = \"prismatic\"\nbetween = [\"ground.O\", \"rod.C\"]\n\
+        axis = [0.6, 0.8]\n[loads.gas]\nkind = \"gas-force\"\njoint = \"g\"\narea = 0.01\n\
+        positions = [0.0, 0.1, 0.2, 0.25, 0.3, 0.5, 0.6, 0.7]\n\
+        pressures = [1500.0, 1000.0, 500.0, 250.0, 0.0, -1000.0, -1500.0, -2000.0]\n\
+        [start]\nrod = { x = 0.12, y = 0.16, velocity_x = 0.0, fixed = true }\n";
+    // 0.5 ẍ = 0.01 (1500 − 5000 x)
+    let travel = |t: f64| 0.3 - 0.1 * (10.0 * t).cos();
+    for kept in runs(gas) {
+        assert_is(&kept, "x", |s| body(s, 0).position[0], |t| 0.6 * travel(t));
+        let energy = |t: f64| 0.25 * (10.0 * t).sin().powi(2);
+        assert_is(&kept, "work", |s| s.energy.load_work, energy);
+        assert_is(&kept, "balance", |s| s.energy.residual, |_| 0.0);
+    }
+}
+
+#[test]
+fn a_wheel_rolls_on_a_rack_with_the_inertia_of_both_motions() {
+    let wheel = "[joints.rail]\nkind = \"pin-slot\"\nbetween = [\"ground.O\", \"rod.C\"]\n\
+        axis = [1.0, 0.0]\n[joints.teeth]\nkind = \"rack\"\nbetween = [\"ground.O\", \"rod.C\"]\n\
+        axis = [1.0, 0.0]\nradius = -0.2\ntravel = 0.05\n[loads.push]\nkind = \"force\"\n\
+        at = \"rod.C\"\nforce = [1.5, 0.0]\n[start]\nrod = { x = 0.05, y = 0.0, angle = 0.0 }\n";
+    let pull = 1.5 / (0.5 + 0.015 / 0.04);
+    for kept in runs(wheel) {
+        assert_is(&kept, "x", |s| body(s, 0).position[0], |t| 0.05 + 0.5 * pull * t * t);
+        assert_is(&kept, "angle", |s| body(s, 0).angle, |t| -2.5 * pull * t * t);
+        let force = |s: &Observation| s.joints[1].force[0] + 1.5 - 0.5 * pull;
+        assert_is(&kept, "teeth", force, |_| 0.0);
+    }
+}
+
+#[test]
+fn both_engines_agree_where_every_load_acts() {
+    let [explicit, ida] =
+        ENGINES.map(|engine| simulate(&case("tests/kinds/loads.toml", &[engine])));
+    for (one, other) in explicit.samples.iter().zip(&ida.samples) {
+        for (a, b) in one.bodies.iter().zip(&other.bodies) {
+            let off = (a.angle - b.angle).abs() + (a.position[0] - b.position[0]).abs();
+            assert!(off < 1e-9, "{off:e} at {}", one.time);
+        }
+    }
+    let kinetic = explicit.largest(|s| s.energy.kinetic);
+    for kept in [&explicit, &ida] {
+        assert!(kept.largest(|s| s.energy.residual) < 1e-9 * kinetic);
+    }
+    let exact = [
+        "solver.engine=explicit",
+        "solver.precision=71",
+        "run.duration=0.02",
+        "run.sample_interval=0.01",
+        "solver.reference_tolerance=1e-22",
+    ];
+    let exact = simulate(&case("tests/kinds/loads.toml", &exact));
+    for (one, truth) in explicit.samples.iter().zip(&exact.samples) {
+        for (a, b) in one.bodies.iter().zip(&truth.bodies) {
+            assert!((a.angle - b.angle).abs() < 1e-12, "{} {}", a.angle, b.angle);
+        }
+    }
+}
+
+#[test]
+fn journals_that_start_closed_lie_where_the_ideal_mechanism_presses_them() {
+    let ideal = simulate(&case("cases/four-bar-ideal.toml", &["run.duration=1e-5"]));
+    for joints in [vec![("four-bar-a", 1)], vec![("four-bar-b", 1), ("four-bar-b", 2)]] {
+        let path = format!("cases/{}.toml", joints[0].0);
+        for how in ["true", "\"pressed\""] {
+            for engine in ENGINES {
+                let closed = format!("start.closed={how}");
+                let set = [engine, &closed, "run.duration=1e-5"];
+                let kept = simulate(&case(&path, &set));
+                for (k, (_, joint)) in joints.iter().enumerate() {
+                    let [x, y] = ideal.samples[0].joints[*joint].force;
+                    let size = x.hypot(y);
+                    let journal = &kept.samples[0].clearances[k];
+                    let along = -(journal.offset[0] * x + journal.offset[1] * y) / size;
+                    let across = (journal.offset[0] * y - journal.offset[1] * x) / size;
+                    assert!(across.abs() < 1e-12, "{path}, {how}: {across:e}");
+                    if how == "true" {
+                        assert!((along - 1e-3).abs() < 1e-12, "{path}: {along:e}");
+                    } else {
+                        let found = journal.normal_force / size;
+                        assert!((found - 1.0).abs() < 1e-6, "{path}: {found}");
+                        assert_eq!(kept.contacts[k].begin, 0.0);
+                    }
+                }
+            }
+        }
+    }
+    let path = std::path::Path::new("case.toml");
+    for (wrong, told) in [
+        ("closed = \"shut\"", "start.closed: must be true, false or \"pressed\", is \"shut\""),
+        ("closd = true", "start.closd: must be a table, is true or false"),
+    ] {
+        let text = with_body(&format!("{PIVOT}[start]\n{wrong}\n"));
+        let changes = freeplay::case::Changes::default();
+        let error = freeplay::case::Case::from_text(path, &text, &changes).unwrap_err();
+        assert!(error.to_string().contains(told), "{error}");
     }
 }

@@ -107,8 +107,14 @@ impl FromStr for Override {
 }
 
 /// Keys of which one stands in the place of the other.
-const INSTEAD: [[&str; 2]; 2] =
-    [["duration", "revolutions"], ["restitution", "achieved_restitution"]];
+const INSTEAD: [[&str; 2]; 6] = [
+    ["duration", "revolutions"],
+    ["restitution", "achieved_restitution"],
+    ["file", "times"],
+    ["file", "values"],
+    ["file", "positions"],
+    ["file", "pressures"],
+];
 
 /// Sets a key below a table; tables on the way that are not there are made. Gives what stands in
 /// the way.
@@ -116,8 +122,8 @@ fn set(table: &mut dyn TableLike, keys: &[String], value: &Value) -> Result<(), 
     let Some((key, rest)) = keys.split_first() else { return Ok(()) };
     if rest.is_empty() {
         // what is set takes the place of what would say the same otherwise
-        let pair = INSTEAD.iter().find(|pair| pair.contains(&key.as_str()));
-        pair.into_iter().flatten().filter(|other| *other != key).for_each(|other| {
+        let pairs = INSTEAD.iter().filter(|pair| pair.contains(&key.as_str()));
+        pairs.flatten().filter(|other| *other != key).for_each(|other| {
             table.remove(other);
         });
         replace(table, key, value.clone());

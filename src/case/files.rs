@@ -16,7 +16,9 @@ pub(super) fn take_in(path: &Path, document: &mut DocumentMut) -> Result<bool, V
     let beside = path.parent().unwrap_or(Path::new(""));
     let (mut any, mut complaints) = (false, Vec::new());
     for list in ["drives", "loads"] {
-        let Some(parts) = document.get_mut(list).and_then(Item::as_table_like_mut) else { continue };
+        let Some(parts) = document.get_mut(list).and_then(Item::as_table_like_mut) else {
+            continue;
+        };
         for (name, part) in parts.iter_mut() {
             let key = KeyPath::new([list, name.get()]);
             if let Some(part) = part.as_table_like_mut() {
@@ -97,7 +99,9 @@ fn read(path: &Path, name: &str, columns: &[&str]) -> Result<Vec<Array>, String>
                 let wanted = columns.join(" and ");
                 let found = crate::model::shortened(line);
                 let many = columns.len();
-                return Err(format!("line {number} of {name} must be {many} numbers, {wanted}, is {found:?}"));
+                return Err(format!(
+                    "line {number} of {name} must be {many} numbers, {wanted}, is {found:?}"
+                ));
             }
         }
     }
@@ -106,7 +110,8 @@ fn read(path: &Path, name: &str, columns: &[&str]) -> Result<Vec<Array>, String>
 
 /// A number as TOML writes it.
 fn as_number(field: &str) -> Option<Value> {
-    let begins = field.trim_start_matches(['+', '-']).starts_with(|c: char| c.is_ascii_digit() || c == '.');
+    let begins =
+        field.trim_start_matches(['+', '-']).starts_with(|c: char| c.is_ascii_digit() || c == '.');
     let number = Decimal::new(field).ok().filter(|_| begins)?.to_string();
     let (sign, number) = match number.strip_prefix('-') {
         Some(number) => ("-", number),

@@ -6,7 +6,8 @@ use super::table_reader::TableReader;
 use crate::contact::{Damping, elastic, viscous};
 use crate::model::{
     BodyDescription, ClearanceDescription, DampingDescription, Description, DriveDescription,
-    JointDescription, LoadDescription, NamedPoint, NormalDescription, StartDescription, Tension,
+    JointDescription, Journals, LoadDescription, NamedPoint, NormalDescription, StartDescription,
+    Tension,
 };
 use crate::parameter::{Kind, Values};
 use crate::{course, friction, joint, load};
@@ -15,14 +16,26 @@ const TENSIONS: [(&str, Tension); 2] = [("keep", Tension::Keep), ("cut", Tension
 
 /// The mechanism that the root of a case describes.
 pub(super) fn description(root: &mut TableReader) -> Description {
+    let starts = |keys: &mut TableReader| (journals(keys), keys.other_tables(start));
+    let (journals, start) = root.optional_table("start", starts).unwrap_or_default();
     Description {
         ground: root.optional_table("ground", points).unwrap_or_default(),
         bodies: root.named_tables("bodies", body),
         joints: root.named_tables("joints", joint).into_iter().flatten().collect(),
         drives: root.named_tables("drives", drive).into_iter().flatten().collect(),
         loads: root.named_tables("loads", load).into_iter().flatten().collect(),
-        start: root.named_tables("start", start),
+        start,
+        journals,
     }
+}
+
+/// The key of all starts: where journals are. A table of that name is the start of a body.
+fn journals(keys: &mut TableReader) -> Journals {
+    if keys.has_table("closed") {
+        return Journals::Centred;
+    }
+    let flag = |closed| if closed { Journals::Touching } else { Journals::Centred };
+    keys.flag_or_choice("closed", &[("pressed", Journals::Pressed)], flag).unwrap_or_default()
 }
 
 /// The points of a body or of the ground.

@@ -129,8 +129,8 @@ impl NormName {
 impl Plan {
     /// Reads the keys `run` and `solver` of a case's root.
     pub(super) fn read(root: &mut TableReader) -> Plan {
-        let (revolutions, duration, sample_interval, windows, sampling, checkpoint_interval) =
-            root.table("run", |keys| {
+        let (revolutions, duration, sample_interval, windows, sampling, checkpoint_interval) = root
+            .table("run", |keys| {
                 let revolutions: Option<Decimal> = keys.optional("revolutions", "");
                 let duration = match revolutions {
                     Some(_) => keys.optional("duration", "s"),
@@ -221,7 +221,8 @@ impl Plan {
                 complaints.add(key, message);
             } else if end > last.value() {
                 let run = format!("the run ends at {} s", self.duration);
-                let message = format!("end at {last} s, and {run}: a drive needs values until then");
+                let message =
+                    format!("end at {last} s, and {run}: a drive needs values until then");
                 complaints.add(key, message);
             }
         }
@@ -273,8 +274,7 @@ impl Plan {
             let SampleWindow { from, to, interval } = window;
             let begins = |x: f64| x >= 0.0;
             complaints.require(key.key("from"), from, "s", "zero or positive", begins);
-            if complaints.require_finite(key.key("to"), to, "s") && !(to.to_f64() > from.to_f64())
-            {
+            if complaints.require_finite(key.key("to"), to, "s") && !(to.to_f64() > from.to_f64()) {
                 let message = format!("must be greater than from, {from} (s), is {to}");
                 complaints.add(key.key("to"), message);
             }

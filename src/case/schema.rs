@@ -134,12 +134,13 @@ fn value(key: &Key) -> Value {
         Takes::Number(range) => number(range),
         Takes::Vector(_) => pair("number"),
         Takes::Points | Takes::Bodies => pair("string"),
-        Takes::Point | Takes::Body => json!({ "type": "string" }),
+        Takes::Point | Takes::Body | Takes::Joint(_) => json!({ "type": "string" }),
         Takes::Word(words) => json!({ "type": "string", "enum": words }),
         Takes::Course => json!({ "oneOf": [{ "type": "number" }, { "$ref": "#/$defs/course" }] }),
         Takes::NumberOr(range, words) => {
             json!({ "oneOf": [number(range), { "type": "string", "enum": words }] })
         }
+        Takes::Friction => json!({ "$ref": "#/$defs/friction" }),
         Takes::Numbers => json!({ "type": "array", "items": { "type": "number" }, "minItems": 2 }),
         Takes::File => json!({ "type": "string" }),
         Takes::OfMaterials(range) => json!({ "oneOf": [number(range), pair("number")] }),
@@ -190,7 +191,8 @@ pub fn tables() -> String {
     kinds(&mut text, "Drives: `[drives.NAME]`", &defs["drive"], course::KINDS);
     kinds(&mut text, "Loads: `[loads.NAME]`", &defs["load"], load::KINDS);
     kinds(&mut text, "Courses: values that change with time", &defs["course"], course::KINDS);
-    table(&mut text, "Start: `[start]`, by body", "", &defs["start"]);
+    table(&mut text, "Start: `[start]`", "", &schema["properties"]["start"]);
+    table(&mut text, "Start of a body: `NAME = { … }` in `[start]`", "", &defs["start"]);
     table(&mut text, "Run: `[run]`", "", &schema["properties"]["run"]);
     table(&mut text, "Windows of samples: `[[run.window]]`", "", &defs["window"]);
     table(&mut text, "Solver: `[solver]`", "", &schema["properties"]["solver"]);

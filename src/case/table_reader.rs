@@ -1,10 +1,10 @@
 //! Reads the keys of one TOML table, and notes what is missing, of the wrong type or unknown.
 
 use super::{DefaultTaken, source};
-use crate::course;
 use crate::model::{Complaint, KeyPath, MOST_TOLD, did_you_mean, in_brackets, shortened};
 use crate::parameter::{self, Key, Kind, Otherwise, Takes, Values};
 use crate::scalar::Decimal;
+use crate::{course, friction};
 use std::collections::HashSet;
 use toml_edit::{Item, Table, TableLike, Value};
 
@@ -156,6 +156,21 @@ impl FromItem for Body {
 
     fn placeholder() -> Self {
         Body(String::new())
+    }
+}
+
+/// The name of a joint.
+struct Joint(String);
+
+impl FromItem for Joint {
+    const EXPECTED: &'static str = "the name of a joint";
+
+    fn from_item(item: &Item) -> Option<Self> {
+        item.as_str().map(|joint| Joint(joint.to_owned()))
+    }
+
+    fn placeholder() -> Self {
+        Joint(String::new())
     }
 }
 
@@ -424,7 +439,7 @@ impl<'d> TableReader<'d, '_> {
                     self.choice(name, &words, None).unwrap_or_default().to_owned(),
                 )
             }
-            Takes::Course => parameter::Value::Course(Box::new(self.course(name, unit))),
+            Takes::Course => parameter::Value::Part(Box::new(self.course(name, unit))),
             Takes::NumberOr(_, words) => {
                 let words: Vec<_> = words
                     .iter()
@@ -434,6 +449,8 @@ impl<'d> TableReader<'d, '_> {
                 let read = self.number_or_choice(name, unit, &words, None, number);
                 read.unwrap_or_else(|| parameter::Value::Text(String::new()))
             }
+            Takes::Joint(_) => parameter::Value::Text(self.required::<Joint>(name, "").0),
+            Takes::Friction => parameter::Value::Part(Box::new(self.friction(name)?)),
             Takes::Numbers => parameter::Value::Numbers(self.required(name, unit)),
             Takes::File => parameter::Value::Text(self.required(name, "")),
             Takes::OfMaterials(_) => {
@@ -464,6 +481,11 @@ impl<'d> TableReader<'d, '_> {
             }),
             None => always(self.required(name, unit)),
         }
+    }
+
+    /// A law of friction: a table with the word of its kind.
+    fn friction(&mut self, name: &'static str) -> Option<Values> {
+        self.table(name, |keys| keys.part("law", friction::KINDS, None))
     }
 
     /// Says that checks of what stands in this table would mislead.
@@ -512,20 +534,51 @@ impl<'d> TableReader<'d, '_> {
     pub fn named_tables<T>(
         &mut self,
         key: &'static str,
-        mut read: impl FnMut(&str, &mut TableReader) -> T,
+        read: impl FnMut(&str, &mut TableReader) -> T,
     ) -> Vec<T> {
-        let each = |reader: &mut TableReader| {
-            let Some(list) = reader.table else { return Vec::new() };
-            reader.any_key = true;
-            let mut values = Vec::new();
-            for (name, item) in list.iter() {
-                let table = reader.as_table(name, item);
-                let path = reader.path.key(name);
-                values.push(TableReader::read(path, table, reader.findings, |r| read(name, r)));
-            }
-            values
-        };
-        self.optional_table(key, each).unwrap_or_default()
+        self.optional_table(key, |reader| reader.other_tables(read)).unwrap_or_default()
+    }
+
+    /// What `read` makes of every table of this one that was not asked for, each with its name, in the
+    /// file's order.
+    pub fn other_tables<T>(&mut self, mut read: impl FnMut(&str, &mut TableReader) -> T) -> Vec<T> {
+        let Some(list) = self.table else { return Vec::new() };
+        self.any_key = true;
+        let mut values = Vec::new();
+        let asked = self.asked.clone();
+        for (name, item) in list.iter().filter(|(name, _)| !asked.contains(name)) {
+            let table = self.as_table(name, item);
+            let path = self.path.key(name);
+            values.push(TableReader::read(path, table, self.findings, |r| read(name, r)));
+        }
+        values
+    }
+
+    /// Whether a key has a table.
+    pub fn has_table(&self, key: &str) -> bool {
+        self.table.and_then(|table| table.get(key)).is_some_and(Item::is_table_like)
+    }
+
+    /// What `true` or `false` or one of several words stands for, of a key that may be left out; `None`
+    /// after a complaint too.
+    pub fn flag_or_choice<T: Clone>(
+        &mut self,
+        key: &'static str,
+        choices: &[(&'static str, T)],
+        from_flag: impl FnOnce(bool) -> T,
+    ) -> Option<T> {
+        let item = self.item(key)?;
+        if let Some(flag) = item.as_bool() {
+            return Some(from_flag(flag));
+        }
+        let word = item.as_str();
+        let found = choices.iter().find(|(known, _)| Some(*known) == word);
+        if found.is_none() {
+            let words: Vec<&str> = choices.iter().map(|(word, _)| *word).collect();
+            let found = word.map_or(describe(item), |word| format!("{:?}", shortened(word)));
+            self.complain(key, format!("must be true, false or {}, is {found}", one_of(&words)));
+        }
+        found.map(|(_, value)| value.clone())
     }
 
     /// What `read` makes of every table of a list below a key that may be left out; in complaints

@@ -80,7 +80,7 @@ impl<S: Scalar> Course<S> {
 
     /// The course of a key of other values.
     pub fn of_key(values: &Values, key: &str) -> Self {
-        let course = values.course(key).and_then(Course::of);
+        let course = values.part(key).and_then(Course::of);
         course.unwrap_or(Course::constant(S::from_f64(f64::NAN)))
     }
 

@@ -94,7 +94,10 @@ impl<S: Scalar> Spline<S> {
         };
         Spline {
             pieces: spans.map(piece).collect(),
-            knots: knots[degree..knots.len() - degree].iter().map(|x| S::from_octuple(*x)).collect(),
+            knots: knots[degree..knots.len() - degree]
+                .iter()
+                .map(|x| S::from_octuple(*x))
+                .collect(),
         }
     }
 
@@ -118,7 +121,13 @@ impl<S: Scalar> Spline<S> {
     /// Value and two derivatives at x.
     pub fn at<T: Lift<S>>(&self, x: T) -> [T; 3] {
         let (first, last) = (T::lift(self.knots[0]), T::lift(self.knots[self.knots.len() - 1]));
-        let within = if x < first { first } else if x > last { last } else { x };
+        let within = if x < first {
+            first
+        } else if x > last {
+            last
+        } else {
+            x
+        };
         let piece = self.pieces.partition_point(|piece| T::lift(piece.from) <= within).max(1) - 1;
         let Piece { from, coefficients } = &self.pieces[piece];
         let x = within - T::lift(*from);
@@ -229,7 +238,8 @@ mod tests {
         };
         for count in [6, 7, 8, 9, 12, 40] {
             let points = points(count, |x| powers(x)[0]);
-            let (exact, double) = (Spline::<F256>::through(&points), Spline::<f64>::through(&points));
+            let (exact, double) =
+                (Spline::<F256>::through(&points), Spline::<f64>::through(&points));
             let (first, last) = (points[0].0, points[count - 1].0);
             for k in 0..=100 {
                 let x = first + (last - first) * F256::ratio(k, 100);
@@ -263,9 +273,8 @@ mod tests {
             let far = pair[1].from - pair[0].from;
             let [before, after] = [&pair[0].coefficients, &pair[1].coefficients];
             for order in 0..DEGREE {
-                let choose = |n: usize| {
-                    (0..order).fold(1.0, |c, k| c * (n - k) as f64 / (k + 1) as f64)
-                };
+                let choose =
+                    |n: usize| (0..order).fold(1.0, |c, k| c * (n - k) as f64 / (k + 1) as f64);
                 let sum = (order..=DEGREE).rev().fold(F256::from(0), |sum, n| {
                     sum * far + before[n] * F256::from_f64(choose(n))
                 });

@@ -30,6 +30,7 @@ kinds! { $
     Fixed in fixed,
     Distance in distance,
     Gear in gear,
+    Rack in rack,
     #[cfg(test)]
     Scratch in scratch,
 }

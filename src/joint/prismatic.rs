@@ -6,7 +6,7 @@
 
 use super::{BETWEEN, Ends, Holonomic, MOST_BODIES, MOST_ROWS, Pair, between, lift, unit};
 use crate::parameter::{Key, Kind, Range, Takes, Values};
-use crate::plane::{Pose, Vector};
+use crate::plane::{Motion, Pose, Vector, Wrench};
 use crate::scalar::{Lift, Scalar};
 
 /// The key of the line that a point slides on.
@@ -43,6 +43,26 @@ impl<S: Scalar> Prismatic<S> {
     pub fn new(values: &Values, ends: &Ends<S>) -> Self {
         let axis = unit(values.vector("axis"));
         Prismatic { pair: ends.pair, axis, angle: values.number("angle") }
+    }
+
+    /// Rate (m/s) of the travel on the line: how fast the second body slides on the first.
+    pub fn rate<T: Lift<S>>(&self, poses: &[Pose<T>; 2], motions: &[Motion<T>; 2]) -> T {
+        let [arm_i, arm_j] = self.arms(poses);
+        let along = poses[0].rotate(lift(self.axis));
+        along.dot(motions[1].at(arm_j) - motions[0].at(arm_i))
+    }
+
+    /// What a force (N) along the axis puts on first and second body, at the second's point.
+    pub fn pushed<T: Lift<S>>(&self, force: T, poses: &[Pose<T>; 2]) -> [Wrench<T>; 2] {
+        let [arm_i, arm_j] = self.arms(poses);
+        let force = poses[0].rotate(lift(self.axis)) * force;
+        [Wrench::at(arm_i, -force), Wrench::at(arm_j, force)]
+    }
+
+    /// From both mass centres to the second point (m).
+    fn arms<T: Lift<S>>(&self, poses: &[Pose<T>; 2]) -> [Vector<T>; 2] {
+        let arm = poses[1].rotate(lift(self.pair.s_j));
+        [poses[1].position + arm - poses[0].position, arm]
     }
 
     /// Travel u · d (m) of the second point along the line, from the first.

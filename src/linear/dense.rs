@@ -96,6 +96,36 @@ pub fn determinant_sign<S: Scalar>(a: &mut [S], n: usize) -> i8 {
     sign
 }
 
+/// Solves a square system, with the largest pivots of columns; the solution takes the place of the
+/// right side. Gives false where the matrix is singular.
+pub fn solve_square<S: Scalar>(a: &mut [S], b: &mut [S]) -> bool {
+    let n = b.len();
+    for k in 0..n {
+        let size = |row: &usize| a[row * n + k].abs().to_f64();
+        let largest = (k..n).max_by(|i, j| size(i).total_cmp(&size(j))).unwrap_or(k);
+        (0..n).for_each(|c| a.swap(k * n + c, largest * n + c));
+        b.swap(k, largest);
+        let pivot = a[k * n + k];
+        if !(pivot.abs() > S::zero()) {
+            return false;
+        }
+        for i in k + 1..n {
+            let factor = a[i * n + k] / pivot;
+            for c in k + 1..n {
+                let change = factor * a[k * n + c];
+                a[i * n + c] -= change;
+            }
+            let change = factor * b[k];
+            b[i] -= change;
+        }
+    }
+    for k in (0..n).rev() {
+        let known = (k + 1..n).fold(b[k], |sum, c| sum - a[k * n + c] * b[c]);
+        b[k] = known / a[k * n + k];
+    }
+    true
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -136,6 +166,16 @@ mod tests {
                 prop_assert!((b - x).abs() < 1e-12);
             }
         }
+    }
+
+    #[test]
+    fn square_solves_exchange_rows_and_tell_singular_matrices() {
+        let mut a = [0.0, 2.0, 1.0, 1.0, 1.0, 1.0, 4.0, -1.0, 0.5];
+        let x = [3.0, -2.0, 0.25];
+        let mut b = times(&a, 3, &x);
+        assert!(solve_square(&mut a, &mut b));
+        assert!(b.iter().zip(x).all(|(b, x)| (b - x).abs() < 1e-14), "{b:?}");
+        assert!(!solve_square(&mut [1.0, 2.0, 2.0, 4.0], &mut [1.0, 1.0]));
     }
 
     #[test]

@@ -9,7 +9,7 @@ mod nearest;
 mod symmetric;
 
 pub use cascade::{Cascade, Row};
-pub use dense::determinant_sign;
+pub use dense::{determinant_sign, solve_square};
 pub use nearest::nearest;
 pub use symmetric::Symmetric;
 

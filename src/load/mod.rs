@@ -4,7 +4,7 @@
 //! of acceleration on all of them. The slopes that an implicit engine wants follow by dual numbers.
 
 use crate::course::Course;
-use crate::joint::Pair;
+use crate::joint::{Pair, Relation};
 use crate::parameter::{Values, kinds};
 use crate::plane::{Motion, Pose, Vector, Wrench};
 use crate::scalar::{Dual, Lift, Scalar};
@@ -17,9 +17,17 @@ kinds! { $
     Torque in torque,
     Spring in spring,
     TorsionSpring in torsion_spring,
+    JointFriction in joint_friction,
+    SpeedController in speed_controller,
+    GasForce in gas_force,
     #[cfg(test)]
     Scratch in scratch,
 }
+
+pub use joint_friction::is_smooth;
+
+/// The word of the friction of a joint.
+pub const JOINT_FRICTION: &str = joint_friction::KIND.word;
 
 /// The word of the load that is a field of gravity.
 pub const GRAVITY: &str = gravity::KIND.word;
@@ -31,6 +39,8 @@ pub struct Ends<S> {
     pub pair: Pair<S>,
     /// Where potential energy in a field is zero (m).
     pub datum: Vector<S>,
+    /// Index of the joint that it sits in, and what that holds; `None` where it sits in none.
+    pub joint: Option<(usize, Relation<S>)>,
 }
 
 /// Powers of a load (W).
@@ -74,6 +84,29 @@ pub trait Acts<S: Scalar>: Clone {
         None
     }
 
+    /// Typical size of what it remembers, in its unit; `None` where it remembers nothing.
+    fn inner_scale(&self) -> Option<f64> {
+        None
+    }
+
+    /// Its wrenches, and the rate of what it remembers, where that is `inner`. What they do counts as
+    /// work, in place of [`powers`](Acts::powers).
+    fn remembering<T: Lift<S>>(
+        &self,
+        time: S,
+        poses: &[Pose<T>; 2],
+        motions: &[Motion<T>; 2],
+        inner: T,
+    ) -> ([Wrench<T>; 2], T) {
+        let _ = inner;
+        (self.wrenches(time, poses, motions), T::zero())
+    }
+
+    /// The friction that it is.
+    fn rubs(&self) -> Option<&JointFriction<S>> {
+        None
+    }
+
     /// A rate (rad/s) of the motion that it makes a mass (kg) go through, over a length (m).
     fn pace(&self, mass: f64, length: f64) -> f64;
 }
@@ -109,6 +142,16 @@ impl<S: Scalar> Load<S> {
         each_law!(&self.law, law => law.course())
     }
 
+    /// Typical size of what it remembers, if it does.
+    pub fn inner_scale(&self) -> Option<f64> {
+        each_law!(&self.law, law => law.inner_scale())
+    }
+
+    /// The friction that it is, where it is one.
+    pub fn rubs(&self) -> Option<&JointFriction<S>> {
+        each_law!(&self.law, law => law.rubs())
+    }
+
     /// A rate (rad/s) of the motion that it makes a mass (kg) go through, over a length (m).
     pub fn pace(&self, mass: f64, length: f64) -> f64 {
         each_law!(&self.law, law => law.pace(mass, length))
@@ -138,45 +181,59 @@ impl<S: Scalar> Load<S> {
         }
     }
 
-    /// Slopes of the wrenches on both bodies by coordinate `c` (x, y, θ) of one of them, and by its
-    /// rate.
+    /// Adds what a load that remembers puts on each body, and gives the rate of what it remembers.
+    pub fn apply_remembering(
+        &self,
+        time: S,
+        poses: &[Pose<S>],
+        motions: &[Motion<S>],
+        inner: S,
+        wrenches: &mut [Wrench<S>],
+    ) -> S {
+        let (poses, motions) = self.of(poses, motions);
+        let (on, rate) =
+            each_law!(&self.law, law => law.remembering(time, &poses, &motions, inner));
+        for (body, wrench) in self.bodies.into_iter().zip(on) {
+            wrenches[body] += wrench;
+        }
+        rate
+    }
+
+    /// Slopes of the wrenches on both bodies, and of the rate of what it remembers: by coordinate `c`
+    /// (x, y, θ) of one of them, and by its rate.
     pub fn slopes(
         &self,
         time: S,
         poses: &[Pose<S>],
         motions: &[Motion<S>],
+        inner: S,
         place: (usize, usize),
-    ) -> [[Wrench<S>; 2]; 2] {
+    ) -> [([Wrench<S>; 2], S); 2] {
         let (poses, motions) = self.of(poses, motions);
-        let constant = |m: &Motion<S>| Motion {
-            linear: Vector::new(Dual::from_re(m.linear.x), Dual::from_re(m.linear.y)),
-            angular: Dual::from_re(m.angular),
-        };
-        let motions = motions.each_ref().map(constant);
-        let seeded = crate::joint::seeded(&poses, place);
-        let still = seeded.map(|pose| Pose {
-            position: Vector::new(
-                Dual::from_re(pose.position.x.re),
-                Dual::from_re(pose.position.y.re),
-            ),
-            angle: Dual::from_re(pose.angle.re),
-            cos: Dual::from_re(pose.cos.re),
-            sin: Dual::from_re(pose.sin.re),
-        });
-        let mut faster = motions;
-        let motion = &mut faster[place.0];
-        match place.1 {
-            0 => motion.linear.x.eps = S::one(),
-            1 => motion.linear.y.eps = S::one(),
-            _ => motion.angular.eps = S::one(),
-        }
-        let slope = |w: Wrench<Dual<S>>| Wrench {
-            force: Vector::new(w.force.x.eps, w.force.y.eps),
-            moment: w.moment.eps,
-        };
-        [(&seeded, &motions), (&still, &faster)].map(|(poses, motions)| {
-            each_law!(&self.law, law => law.wrenches(time, poses, motions)).map(slope)
+        seeded(&poses, &motions, place).map(|(poses, motions)| {
+            let inner = Dual::from_re(inner);
+            let (on, rate) =
+                each_law!(&self.law, law => law.remembering(time, &poses, &motions, inner));
+            (slopes_of(on), rate.eps)
         })
+    }
+
+    /// Slopes of the same by what it remembers.
+    pub fn inner_slopes(
+        &self,
+        time: S,
+        poses: &[Pose<S>],
+        motions: &[Motion<S>],
+        inner: S,
+    ) -> ([Wrench<S>; 2], S) {
+        let (poses, motions) = self.of(poses, motions);
+        // nothing but what it remembers changes
+        let [(mut poses, motions), _] = seeded(&poses, &motions, (0, 0));
+        poses[0].position.x.eps = S::zero();
+        let inner = Dual::new(inner, S::one());
+        let (on, rate) =
+            each_law!(&self.law, law => law.remembering(time, &poses, &motions, inner));
+        (slopes_of(on), rate.eps)
     }
 
     /// Potential energy (J).
@@ -189,15 +246,66 @@ impl<S: Scalar> Load<S> {
         -masses.iter().zip(poses).map(weigh).fold(S::zero(), |sum, v| sum + v)
     }
 
-    /// Its powers (W).
-    pub fn powers(&self, time: S, poses: &[Pose<S>], motions: &[Motion<S>]) -> Powers<S> {
+    /// Its powers (W), where `inner` is what it remembers, if it does.
+    pub fn powers(
+        &self,
+        time: S,
+        poses: &[Pose<S>],
+        motions: &[Motion<S>],
+        inner: Option<S>,
+    ) -> Powers<S> {
         let (poses, motions) = self.of(poses, motions);
-        each_law!(&self.law, law => law.powers(time, &poses, &motions))
+        let Some(inner) = inner else {
+            return each_law!(&self.law, law => law.powers(time, &poses, &motions));
+        };
+        let (on, _) = each_law!(&self.law, law => law.remembering(time, &poses, &motions, inner));
+        let work = on.iter().zip(&motions).fold(S::zero(), |sum, (wrench, motion)| {
+            sum + wrench.force.dot(motion.linear) + wrench.moment * motion.angular
+        });
+        Powers { work, dissipation: S::zero() }
     }
 
     fn of(&self, poses: &[Pose<S>], motions: &[Motion<S>]) -> ([Pose<S>; 2], [Motion<S>; 2]) {
         (self.bodies.map(|body| poses[body]), self.bodies.map(|body| motions[body]))
     }
+}
+
+/// Poses and motions of two bodies with a direction in which they change.
+type Seeded<S> = ([Pose<Dual<S>>; 2], [Motion<Dual<S>>; 2]);
+
+/// Poses and motions of two bodies that change in one coordinate (x, y, θ) of one of them; and the
+/// same that change in its rate.
+fn seeded<S: Scalar>(
+    poses: &[Pose<S>; 2],
+    motions: &[Motion<S>; 2],
+    place: (usize, usize),
+) -> [Seeded<S>; 2] {
+    let constant = |m: &Motion<S>| Motion {
+        linear: Vector::new(Dual::from_re(m.linear.x), Dual::from_re(m.linear.y)),
+        angular: Dual::from_re(m.angular),
+    };
+    let motions = motions.each_ref().map(constant);
+    let moved = crate::joint::seeded(poses, place);
+    let still = moved.map(|pose| Pose {
+        position: Vector::new(Dual::from_re(pose.position.x.re), Dual::from_re(pose.position.y.re)),
+        angle: Dual::from_re(pose.angle.re),
+        cos: Dual::from_re(pose.cos.re),
+        sin: Dual::from_re(pose.sin.re),
+    });
+    let mut faster = motions;
+    let motion = &mut faster[place.0];
+    match place.1 {
+        0 => motion.linear.x.eps = S::one(),
+        1 => motion.linear.y.eps = S::one(),
+        _ => motion.angular.eps = S::one(),
+    }
+    [(moved, motions), (still, faster)]
+}
+
+/// The slopes of wrenches by what was seeded.
+fn slopes_of<S: Scalar>(wrenches: [Wrench<Dual<S>>; 2]) -> [Wrench<S>; 2] {
+    wrenches
+        .map(|w| Wrench { force: Vector::new(w.force.x.eps, w.force.y.eps), moment: w.moment.eps })
 }
 
 /// A vector of parameters in a richer arithmetic.

@@ -3,7 +3,7 @@
 use super::layout::{Coupling, Role};
 use super::{Mechanism, Touch, inner_states};
 use crate::clearance::Mode;
-use crate::dae::State;
+use crate::dae::{Fault, State};
 use crate::linear::Singular;
 use crate::load::Powers;
 use crate::plane::{Motion, Vector, Wrench};
@@ -17,9 +17,18 @@ impl<S: Scalar> Mechanism<S> {
         let now = &mut self.now;
         now.wrenches.fill(Wrench::none());
         now.relaxation = 0.0;
-        for load in self.model.loads() {
-            let masses = self.model.masses();
-            load.apply(now.time, masses, &now.poses, &now.motions, &mut now.wrenches);
+        for (load, place) in self.model.loads().iter().zip(&self.load_places) {
+            let (time, poses, motions) = (now.time, &now.poses, &now.motions);
+            match *place {
+                None => {
+                    load.apply(time, self.model.masses(), poses, motions, &mut now.wrenches);
+                }
+                Some(place) => {
+                    let (inner, wrenches) = (now.z[place], &mut now.wrenches);
+                    now.z_dot[place] =
+                        load.apply_remembering(time, poses, motions, inner, wrenches);
+                }
+            }
         }
         for (k, clearance) in self.model.clearances().iter().enumerate() {
             let places = self.inner_places[k].clone();
@@ -67,10 +76,11 @@ impl<S: Scalar> Mechanism<S> {
     /// ```text
     /// (Φ_q M⁻¹ Φ_qᵀ) λ = Φ̈(M⁻¹ Q),   v̇ = M⁻¹ (Q − Φ_qᵀ λ)
     /// ```
-    pub(super) fn solve(&mut self) -> Result<(), Singular> {
+    /// Friction in joints is part of Q, and depends on λ.
+    pub(super) fn solve(&mut self) -> Result<(), Fault> {
         self.accelerate();
         if self.layout.rows > 0 {
-            self.factor()?;
+            self.factor().map_err(|singular| self.singular(singular))?;
             let now = &mut self.now;
             for (row, arms) in self.layout.constraints.iter().zip(&now.arms) {
                 let (motions, accelerations) = (&now.motions, &now.accelerations);
@@ -85,6 +95,9 @@ impl<S: Scalar> Mechanism<S> {
                 );
             }
             self.now.matrix.solve(&mut self.now.lambda);
+            if !self.rubbings.is_empty() {
+                self.rub()?;
+            }
             self.apply_multipliers();
             self.accelerate();
         }
@@ -176,7 +189,9 @@ impl<S: Scalar> Mechanism<S> {
             let mut reaction = Wrench::at(now.poses[driven.base].rotate(s_base), -force);
             reaction.moment -= torque;
             now.wrenches[driven.base] += reaction;
-            now.driving[index] = (force, torque);
+            // of that torque friction in the joint does its part, and the drive the rest
+            let rubbing = self.rubbing_on_driven(index, driven.second, force);
+            self.now.driving[index] = (force, torque - rubbing);
         }
     }
 
@@ -212,14 +227,18 @@ impl<S: Scalar> Mechanism<S> {
         if let Some([work, dissipation]) = self.ledger.loads() {
             let now = &mut self.now;
             let none = Powers { work: S::zero(), dissipation: S::zero() };
-            let sum = self.model.loads().iter().fold(none, |sum, load| {
-                let powers = load.powers(now.time, &now.poses, &now.motions);
+            let loads = self.model.loads().iter().zip(&self.load_places);
+            let sum = loads.fold(none, |sum, (load, place)| {
+                let inner = place.map(|place| now.z[place]);
+                let powers = load.powers(now.time, &now.poses, &now.motions, inner);
                 Powers {
                     work: sum.work + powers.work,
                     dissipation: sum.dissipation + powers.dissipation,
                 }
             });
-            (now.powers[work], now.powers[dissipation]) = (sum.work, sum.dissipation);
+            let rubbing = self.rubbing_power();
+            let powers = &mut self.now.powers;
+            (powers[work], powers[dissipation]) = (sum.work, sum.dissipation + rubbing);
         }
     }
 }

@@ -23,6 +23,7 @@ impl<S: Scalar> Mechanism<S> {
         self.stand(t, y, yp);
         self.apply_loads(&[]);
         self.apply_multipliers();
+        self.apply_rubbing();
         for k in 0..n {
             r[k] = yp[k] - y[n + k];
         }
@@ -65,7 +66,7 @@ impl<S: Scalar> Mechanism<S> {
     }
 
     /// Place in q of a free body.
-    fn place_in_q(&self, body: usize) -> Option<usize> {
+    pub(super) fn place_in_q(&self, body: usize) -> Option<usize> {
         match self.layout.roles[body] {
             Role::Free(at) => Some(at),
             _ => None,
@@ -93,6 +94,7 @@ impl Dae for Mechanism<f64> {
         let n = self.layout.coordinates;
         self.stand(t, y, yp);
         self.apply_loads(&[]);
+        self.apply_rubbing();
         for k in 0..n {
             j.add(k, k, cj);
             j.add(k, n + k, -1.0);
@@ -105,6 +107,7 @@ impl Dae for Mechanism<f64> {
             self.contact_entries(clearance, j);
         }
         self.load_entries(j);
+        self.rubbing_entries(j);
         self.constraint_entries(cj, j);
         Ok(())
     }
@@ -153,19 +156,32 @@ impl Mechanism<f64> {
         }
     }
 
-    /// −M⁻¹ ∂Q/∂(q, v) of the loads.
+    /// −M⁻¹ ∂Q/∂(q, v, z) and −∂f/∂(q, v, z) of the loads.
     fn load_entries(&self, j: &mut impl Entries) {
         let (n, now) = (self.layout.coordinates, &self.now);
-        for load in self.model.loads() {
+        for (load, place) in self.model.loads().iter().zip(&self.load_places) {
             let Some(bodies) = load.bodies() else { continue };
+            let inner = place.map_or(0.0, |place| now.z[place]);
+            let row = place.map(|place| 2 * n + place);
+            if let Some(row) = row {
+                let (by_z, rate) = load.inner_slopes(now.time, &now.poses, &now.motions, inner);
+                for (on, by_z) in bodies.into_iter().zip(&by_z) {
+                    self.subtract(on, row, by_z, j);
+                }
+                j.add(row, row, -rate);
+            }
             for (side, body) in bodies.into_iter().enumerate() {
                 let Some(at) = self.place_in_q(body) else { continue };
                 for c in 0..3 {
                     let place = (side, c);
-                    let [by_q, by_v] = load.slopes(now.time, &now.poses, &now.motions, place);
-                    for (on, (by_q, by_v)) in bodies.into_iter().zip(by_q.iter().zip(&by_v)) {
-                        self.subtract(on, at + c, by_q, j);
-                        self.subtract(on, n + at + c, by_v, j);
+                    let both = load.slopes(now.time, &now.poses, &now.motions, inner, place);
+                    for ((slopes, rate), column) in both.iter().zip([at + c, n + at + c]) {
+                        for (on, slopes) in bodies.into_iter().zip(slopes) {
+                            self.subtract(on, column, slopes, j);
+                        }
+                        if let Some(row) = row {
+                            j.add(row, column, -rate);
+                        }
                     }
                 }
             }
@@ -173,7 +189,13 @@ impl Mechanism<f64> {
     }
 
     /// Subtracts M⁻¹ of a change of a body's wrench in one column.
-    fn subtract(&self, body: usize, column: usize, change: &Wrench<f64>, j: &mut impl Entries) {
+    pub(super) fn subtract(
+        &self,
+        body: usize,
+        column: usize,
+        change: &Wrench<f64>,
+        j: &mut impl Entries,
+    ) {
         let Some(at) = self.place_in_q(body) else { return };
         let row = self.layout.coordinates + at;
         let by = &self.inverse_masses[at..at + 3];

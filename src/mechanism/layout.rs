@@ -121,8 +121,9 @@ impl<S: Scalar> Layout<S> {
             if constraint.bodies().iter().all(|body| !matches!(roles[*body], Role::Free(_))) {
                 complaints.push(prescribed_twice(model, origin));
             }
-            constraints.push(Row { constraint, first: rows, origin });
+            let first = rows;
             rows += constraint.rows();
+            constraints.push(Row { constraint, first, origin });
         }
         if complaints.is_empty() && rows > coordinates {
             complaints.push(Complaint {

@@ -11,6 +11,7 @@ mod observation;
 mod observe;
 mod place;
 mod project;
+mod rub;
 mod start;
 mod system;
 
@@ -18,6 +19,7 @@ pub use ledger::Ledger;
 pub use measure::{Measure, Measures};
 pub use observation::*;
 pub use project::OpenJoint;
+pub use rub::Jammed;
 pub use system::{ContactRates, SingularPosition};
 
 use crate::clearance::{Clearance, ContactForce, EventSlot, Gap, GapRates, Mode};
@@ -25,11 +27,13 @@ use crate::dae::{Snapshot, Watch};
 use crate::friction::{FrictionLaw, Inner, MOST_INNER};
 use crate::joint::{Arms, Blocks, MOST_BODIES, Relation};
 use crate::linear::Symmetric;
+use crate::load::Load;
 use crate::model::{Complaint, Model};
 use crate::plane::{Motion, Pose, Vector, Wrench};
 use crate::scalar::Scalar;
 use layout::{Layout, Role};
 use measure::ForceSource;
+use rub::{Rubbed, Rubbing};
 use std::ops::Range;
 
 /// A mechanism with its modes, evaluated at one state at a time.
@@ -50,14 +54,20 @@ pub struct Mechanism<S> {
     start: Snapshot<S>,
     start_energy: S,
     start_accuracy: f64,
+    /// Where journals are to start in their bearings (m); empty for the middle.
+    wished_offsets: Vec<Vector<S>>,
     coordinate_scales: Vec<f64>,
     velocity_scales: Vec<f64>,
     /// Places in z of the inner states of each clearance's friction.
     inner_places: Vec<Range<usize>>,
+    /// Place in z of what each load remembers, where it does.
+    load_places: Vec<Option<usize>>,
     inner_scales: Vec<f64>,
     length: f64,
     /// Where the force of each joint stands.
     force_sources: Vec<ForceSource>,
+    /// Friction in ideal joints.
+    rubbings: Vec<Rubbing<S>>,
     /// Mobility of each clearance along and across the line of centres (1/kg).
     mobilities: Vec<[f64; 2]>,
     /// Square of the fastest pace (rad²/s²) that loads and courses give.
@@ -101,6 +111,8 @@ struct Evaluation<S> {
     jacobian: Vec<Blocks<S>>,
     /// Φ_q M⁻¹ Φ_qᵀ, later its factors.
     matrix: Symmetric<S>,
+    /// Friction in ideal joints, once evaluated.
+    rubbed: Vec<Rubbed<S>>,
     /// Force and torque of each driven body's joint and drive on that body.
     driving: Vec<(Vector<S>, S)>,
 }
@@ -126,6 +138,7 @@ impl<S: Scalar> Evaluation<S> {
             arms: vec![[Vector::zero(); 2]; layout.constraints.len()],
             jacobian: vec![[[S::zero(); 3]; MOST_BODIES]; layout.rows],
             matrix: layout.matrix.clone(),
+            rubbed: Vec::new(),
             driving: vec![(Vector::zero(), S::zero()); layout.driven.len()],
         }
     }
@@ -145,6 +158,18 @@ impl<S: Scalar> Mechanism<S> {
     /// # Errors
     /// Joints that hold too much, do not close, or stand in a singular position.
     pub fn new(model: Model<S>) -> Result<Self, Vec<Complaint>> {
+        Mechanism::with_journals_at(model, &[])
+    }
+
+    /// The same with journals that start as near as can be to places in their bearings: offsets of
+    /// their centres (m, fixed frame), in the order of the clearances; none for the middle.
+    ///
+    /// # Errors
+    /// See [`Mechanism::new`].
+    pub fn with_journals_at(
+        model: Model<S>,
+        offsets: &[Vector<f64>],
+    ) -> Result<Self, Vec<Complaint>> {
         let layout = Layout::new(&model)?;
         let mut inverse_masses = Vec::with_capacity(layout.coordinates);
         for (body, role) in layout.roles.iter().enumerate() {
@@ -159,7 +184,7 @@ impl<S: Scalar> Mechanism<S> {
                 clearance.event_slots().into_iter().map(move |slot| (k, slot))
             })
             .collect();
-        let (inner_places, inner_scales) = inner_places(&model);
+        let (inner_places, load_places, inner_scales) = inner_places(&model);
         let depth_slots = (0..slots.len()).filter(|slot| slots[*slot].1 == EventSlot::Depth);
         let mut mechanism = Mechanism {
             depth_slots: depth_slots.collect(),
@@ -175,12 +200,18 @@ impl<S: Scalar> Mechanism<S> {
             inverse_masses,
             coordinate_scales: Vec::new(),
             velocity_scales: Vec::new(),
+            wished_offsets: offsets
+                .iter()
+                .map(|offset| Vector::new(S::from_f64(offset.x), S::from_f64(offset.y)))
+                .collect(),
             inner_places,
+            load_places,
             inner_scales,
             length: 1.0,
             force_sources: measure::force_sources(&model, &layout),
             mobilities: measure::mobilities(&model, &layout),
             given_pace: measure::given_pace(&model, &layout),
+            rubbings: rub::rubbings(&model, &layout),
             model,
             layout,
         };
@@ -299,16 +330,22 @@ impl<S: Scalar> Mechanism<S> {
     }
 }
 
-/// Places in z of the inner states of each clearance's friction, and the sizes of all of them.
-fn inner_places<S: Scalar>(model: &Model<S>) -> (Vec<Range<usize>>, Vec<f64>) {
+/// Places in z of the inner states of each clearance's friction and of each load, and the sizes of all
+/// of them.
+fn inner_places<S: Scalar>(model: &Model<S>) -> (Vec<Range<usize>>, Vec<Option<usize>>, Vec<f64>) {
     let mut sizes = Vec::new();
-    let mut place = |clearance: &Clearance<S>| {
+    let place = |clearance: &Clearance<S>| {
         let first = sizes.len();
         sizes.extend(clearance.friction.iter().flat_map(FrictionLaw::inner_scales));
         first..sizes.len()
     };
-    let places = model.clearances().iter().map(&mut place).collect();
-    (places, sizes)
+    let clearances = model.clearances().iter().map(place).collect();
+    let place = |load: &Load<S>| {
+        sizes.push(load.inner_scale()?);
+        Some(sizes.len() - 1)
+    };
+    let loads = model.loads().iter().map(place).collect();
+    (clearances, loads, sizes)
 }
 
 /// The inner states at some places in z; those that are not there are zero.

@@ -5,7 +5,8 @@
 //!
 //! 1. ideal joints and drives hold;
 //! 2. fixed start keys hold;
-//! 3. journals are centred in their bearings, C = 0, or as nearly as can be: |C| is least;
+//! 3. journals are centred in their bearings, C = 0, or at other places in them that are wished, or as
+//!    nearly as can be: |C| is least;
 //! 4. what is still free changes least, by mass, and what the case names counts far more.
 //!
 //! Velocities are one such problem, linear: among the rates that the first three ranks allow, the
@@ -361,9 +362,14 @@ impl<S: Scalar> Mechanism<S> {
         let from_fixed = |fixed: &Fixed<S>| q[fixed.at] - fixed.value;
         let away = vec![S::zero(); q.len()];
         let weights = self.weights(|start| start.coordinates);
-        self.conditions(&weights, &away, fixed, from_fixed, |row, error| {
+        let mut conditions = self.conditions(&weights, &away, fixed, from_fixed, |row, error| {
             row.constraint.position_error(self.now.time, &self.now.poses, error);
-        })
+        });
+        let offsets = self.wished_offsets.iter().flat_map(|offset| [offset.x, offset.y]);
+        for (row, offset) in conditions.wished.iter_mut().zip(offsets) {
+            row.error -= offset;
+        }
+        conditions
     }
 
     /// Conditions as placed: how far each unknown is `away` from where it would be left, the value
@@ -498,7 +504,8 @@ impl<S: Scalar> Mechanism<S> {
             }
         }
         complaints.extend(self.unmet(q, allowed, |start| start.coordinates, ["x", "y", "angle"]));
-        if !self.model.starts().iter().any(|start| start.fixed) {
+        let fixed = self.model.starts().iter().any(|start| start.fixed);
+        if !fixed && self.wished_offsets.is_empty() {
             complaints.extend(self.overlaps());
         }
         if complaints.is_empty() { Ok(()) } else { Err(complaints) }

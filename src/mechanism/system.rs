@@ -73,7 +73,7 @@ impl<S: Scalar> System<S> for Mechanism<S> {
         self.place(&state);
         self.now.z.copy_from_slice(state.z);
         self.apply_loads(roots);
-        self.solve().map_err(|singular| self.singular(singular))?;
+        self.solve()?;
         self.drive();
         self.measure_powers();
         Ok(())

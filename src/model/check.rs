@@ -9,7 +9,9 @@ use super::{
 };
 use crate::contact::Damping;
 use crate::contact::elastic::{self, ElasticLaw};
+use crate::friction::{self, Friction};
 use crate::joint::{PRISMATIC, REVOLUTE};
+use crate::load::{JOINT_FRICTION, is_smooth};
 use crate::parameter::{Key, Takes, Value, Values};
 use crate::scalar::Decimal;
 use std::collections::HashSet;
@@ -145,6 +147,10 @@ fn check_part(
                 }
             }
             (Takes::Body, Value::Text(body)) => check_body(complaints, description, key, body),
+            (Takes::Joint(kinds), Value::Text(joint)) => {
+                check_joint_of(complaints, description, key, joint, kinds);
+            }
+            (Takes::Friction, Value::Part(law)) => check_part(complaints, description, &key, law),
             (Takes::Bodies, Value::Pair(bodies)) => {
                 for body in bodies {
                     check_body(complaints, description, key.clone(), body);
@@ -153,7 +159,7 @@ fn check_part(
                     complaints.add(key, format!("names {:?} twice", shortened(&bodies[0])));
                 }
             }
-            (Takes::Course, Value::Course(course)) => {
+            (Takes::Course, Value::Part(course)) => {
                 check_part(complaints, description, &key, course);
                 if course.is("speed") || course.is("ramp") {
                     check_goes(complaints, &key, course, "velocity", "speed_rpm");
@@ -184,6 +190,38 @@ fn check_body(complaints: &mut Complaints, description: &Description, key: KeyPa
         let near = complaints.near(body, known.by_ref());
         complaints.add(key, format!("there is no body {:?}{near}", shortened(body)));
     }
+}
+
+fn check_joint_name(
+    complaints: &mut Complaints,
+    description: &Description,
+    key: KeyPath,
+    joint: &str,
+) {
+    let mut joints = description.joints.iter().map(|known| known.name.as_str());
+    if !joints.clone().any(|known| known == joint) {
+        let near = complaints.near(joint, joints.by_ref());
+        let joint = shortened(joint);
+        complaints.add(key, format!("there is no joint {joint:?}{near}"));
+    }
+}
+
+/// The joint is there, and of one of these kinds.
+fn check_joint_of(
+    complaints: &mut Complaints,
+    description: &Description,
+    key: KeyPath,
+    joint: &str,
+    kinds: &[&str],
+) {
+    check_joint_name(complaints, description, key.clone(), joint);
+    let joint = description.joints.iter().find(|known| known.name == joint);
+    let Some(joint) = joint.filter(|joint| !kinds.contains(&joint.part.kind().word)) else {
+        return;
+    };
+    let kinds: Vec<String> = kinds.iter().map(|kind| format!("{kind:?}")).collect();
+    let (name, kind, kinds) = (&joint.name, joint.part.kind().word, kinds.join(" or "));
+    complaints.add(key, format!("joint {name:?} is {kind:?}, it must be {kinds}"));
 }
 
 /// A course that goes at a speed says it by the key of what goes, and not by the other.
@@ -377,12 +415,7 @@ fn check_drives(complaints: &mut Complaints, description: &Description) {
     for (position, drive) in description.drives.iter().enumerate() {
         let key = KeyPath::new(["drives", &drive.name]);
         let joint = &drive.joint;
-        let mut joints = description.joints.iter().map(|known| known.name.as_str());
-        if !joints.clone().any(|known| known == joint) {
-            let near = complaints.near(joint, joints.by_ref());
-            let joint = shortened(joint);
-            complaints.add(key.key("joint"), format!("there is no joint {joint:?}{near}"));
-        }
+        check_joint_name(complaints, description, key.key("joint"), joint);
         let earlier = &description.drives[..position];
         if let Some(other) = earlier.iter().find(|other| other.joint == *joint) {
             let (other, joint) = (&other.name, shortened(joint));
@@ -421,7 +454,38 @@ fn check_drive(complaints: &mut Complaints, description: &Description, drive: &D
 }
 
 fn check_load(complaints: &mut Complaints, description: &Description, load: &LoadDescription) {
-    check_part(complaints, description, &KeyPath::new(["loads", &load.name]), &load.part);
+    let key = KeyPath::new(["loads", &load.name]);
+    check_part(complaints, description, &key, &load.part);
+    let joint = description.joints.iter().find(|joint| joint.name == load.part.text("joint"));
+    if let Some(joint) = joint.filter(|_| load.part.is(JOINT_FRICTION)) {
+        check_joint_friction(complaints, &key, &load.part, joint);
+    }
+}
+
+/// The joint is ideal, its pin has a radius, and the law can be followed.
+fn check_joint_friction(
+    complaints: &mut Complaints,
+    key: &KeyPath,
+    part: &Values,
+    joint: &JointDescription,
+) {
+    if joint.clearance.is_some() {
+        let (name, rather) = (&joint.name, "its friction is a key of its clearance");
+        complaints.add(key.key("joint"), format!("joint {name:?} has clearance: {rather}"));
+    }
+    let pin = key.key("pin_radius");
+    match (joint.part.kind().word, part.get("pin_radius").is_some()) {
+        (REVOLUTE, false) => complaints.add(pin, "is missing; it must be a number (m)"),
+        (PRISMATIC, true) => complaints.add(pin, format!("a {PRISMATIC:?} joint has no pin")),
+        _ => {}
+    }
+    let ends = friction::Ends { hysteresis: 0.0 };
+    let law = part.part("friction").and_then(|law| Friction::<f64>::new(law, &ends));
+    if law.is_some_and(|law| !is_smooth(&law)) {
+        let rule = "has kinks or remembers, which only contacts can follow";
+        let others = "tanh, brown-mcphee, stribeck and others follow the slip smoothly";
+        complaints.add(key.key("friction").key("law"), format!("{rule}: {others}"));
+    }
 }
 
 fn check_starts(complaints: &mut Complaints, description: &Description) {

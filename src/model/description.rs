@@ -22,6 +22,20 @@ pub struct Description {
     pub loads: Vec<LoadDescription>,
     /// Rough or fixed start poses.
     pub start: Vec<StartDescription>,
+    /// Where in their bearings journals start.
+    pub journals: Journals,
+}
+
+/// Where in their bearings journals start, as nearly as fixed poses leave it open.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Journals {
+    /// Centred.
+    #[default]
+    Centred,
+    /// Touching the wall that the force of the ideal mechanism presses them against.
+    Touching,
+    /// The same, as deep as bears that force.
+    Pressed,
 }
 
 /// A named point of a body or of the ground.

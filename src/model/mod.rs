@@ -122,7 +122,12 @@ impl<S: Scalar> Model<S> {
         });
         let loads = description.loads.iter().map(|load| {
             let sites = Sites::of(description, &frame, &load.part);
-            let ends = load::Ends { pair: sites.pair, datum: -frame.origin() };
+            let mut ends = load::Ends { pair: sites.pair, datum: -frame.origin(), joint: None };
+            if let Some(Value::Text(joint)) = load.part.get("joint") {
+                let index = position(&names.joints, joint);
+                (ends.pair, ends.joint) =
+                    (joints[index].ends.pair, Some((index, joints[index].relation)));
+            }
             known("loads", &load.name, Load::new(&load.part, &ends))
         });
         Ok(Model {

@@ -126,7 +126,9 @@ fn windows_are_set_by_their_number() {
     let inline = ["run.window=[{from=0.01,to=0.02,interval=1e-6}]", "run.window.1.to=0.03"];
     let case = Case::from_text(Path::new("a.toml"), FOUR_BAR_A, &changes(&inline, false)).unwrap();
     assert_eq!(case.plan.windows[0].to.to_string(), "0.03");
-    for wrong in ["run.window.2.to=0.03", "run.window.0.to=0.03", "run.window.1=3", "run.window.x.to=3"] {
+    for wrong in
+        ["run.window.2.to=0.03", "run.window.0.to=0.03", "run.window.1=3", "run.window.x.to=3"]
+    {
         let told = Case::from_text(Path::new("a.toml"), &text, &changes(&[wrong], false));
         let told = told.unwrap_err().to_string();
         assert!(told.contains("cannot be set: \"window\" is no table"), "{wrong}: {told}");
