@@ -154,9 +154,9 @@ fn cases_in(folder: &str) -> Vec<String> {
 
 #[test]
 fn every_column_is_that_of_dual_numbers_in_every_mode_of_every_case() {
-    let folders = ["cases", "tests/cases", "tests/kinds"];
+    let folders = ["cases", "tests/cases", "tests/kinds", "src/cli/new"];
     let cases = folders.map(cases_in).concat();
-    assert!(cases.len() >= 22, "{cases:?}");
+    assert!(cases.len() >= 28, "{cases:?}");
     for path in cases {
         let touched = assert_jacobian(&path, &[]);
         let clearances =

@@ -681,6 +681,140 @@ fn a_wheel_rolls_on_a_rack_with_the_inertia_of_both_motions() {
     }
 }
 
+/// A case that `freeplay new` writes, without its clearances.
+fn new_case(kind: &str, set: &[&str]) -> freeplay::case::Case {
+    let path = root().join("src/cli/new").join(kind).with_extension("toml");
+    let set = set.iter().map(|change| change.parse().unwrap()).collect();
+    let ideal = freeplay::case::Changes { set, ideal: true };
+    simulated::told(freeplay::case::Case::read(&path, &ideal))
+}
+
+#[test]
+fn a_new_scotch_yoke_and_a_new_quick_return_move_by_their_closed_forms() {
+    let yoke = simulate(&new_case("scotch-yoke", &[]));
+    assert_is(&yoke, "x", |s| body(s, 1).position[0], |t| 0.05 * (20.0 * PI * t).cos());
+    let quick = simulate(&new_case("quick-return", &[]));
+    let pin = |t: f64| [0.05 * (2.0 * PI * t).cos(), 0.2 + 0.05 * (2.0 * PI * t).sin()];
+    assert_is(&quick, "lever", |s| body(s, 0).angle, |t| pin(t)[1].atan2(pin(t)[0]));
+    assert_is(&quick, "ram", |s| body(s, 2).position[0], |t| 0.4 * pin(t)[0] / pin(t)[1]);
+    // forth and back take as long as the crank is beyond and within its tangents
+    let [back, forth]: [Vec<_>; 2] = [1.0, -1.0]
+        .map(|sign| quick.samples.iter().filter(|s| sign * body(s, 2).velocity[0] > 0.0).collect());
+    let tangent = 0.25_f64.acos();
+    let ratio = (PI - tangent) / tangent;
+    let found = forth.len() as f64 / back.len() as f64;
+    assert!((found / ratio - 1.0).abs() < 0.05, "{found} {ratio}");
+}
+
+#[test]
+fn a_new_five_bar_closes_above_its_cranks() {
+    let kept = simulate(&new_case("five-bar", &[]));
+    let swing = |t: f64| PI / 2.0 + 0.4 * (4.0 * PI * t - PI / 2.0).cos();
+    let closed = |t: f64| {
+        let a = [0.1 * (4.0 * PI * t).cos(), 0.1 * (4.0 * PI * t).sin()];
+        let b = [0.3 + 0.1 * swing(t).cos(), 0.1 * swing(t).sin()];
+        let way = [b[0] - a[0], b[1] - a[1]];
+        let half = 0.5 * way[0].hypot(way[1]);
+        let up = (0.09 - half * half).sqrt() / (2.0 * half);
+        [0.5 * (a[0] + b[0]) - up * way[1], 0.5 * (a[1] + b[1]) + up * way[0]]
+    };
+    let end = |s: &Observation, k: usize| {
+        let BodyObservation { position: [x, y], angle, .. } = body(s, k);
+        [x + 0.15 * angle.cos(), y + 0.15 * angle.sin()]
+    };
+    for axis in 0..2 {
+        for rod in [2, 3] {
+            assert_is(&kept, "C", |s| end(s, rod)[axis], |t| closed(t)[axis]);
+        }
+    }
+    assert!(kept.largest(|s| s.energy.residual) < 1e-8 * kept.largest(|s| s.energy.kinetic));
+}
+
+#[test]
+fn a_new_planetary_gear_obeys_willis_and_its_spring() {
+    // J r̈ + d ṙ + k r = −2 · 3/4 for the ring once the sun goes evenly
+    let inertia = 5e-3 + 9.0 / 16.0 * (2e-3 + 0.3 * 0.04 * 0.04) + 2.25 * 6e-5;
+    for engine in ENGINES {
+        let set = [engine, "solver.absolute_tolerance=scaled", "run.sample_interval=1e-2"];
+        let kept = simulate(&new_case("planetary-gear", &set));
+        for sample in &kept.samples {
+            let [sun, carrier, planet, ring] = [0, 1, 2, 3].map(|k| body(sample, k));
+            let willis = 4.0 * carrier.angle - 3.0 * ring.angle - sun.angle;
+            assert!(willis.abs() < 1e-11 * (1.0 + sun.angle), "{willis:e}");
+            let rolling = planet.angle - 2.0 * carrier.angle + sun.angle;
+            assert!(rolling.abs() < 1e-11 * (1.0 + sun.angle), "{rolling:e}");
+            let pull = 40.0 * ring.angle + 0.05 * ring.angular_velocity + 1.5;
+            if sample.time > 0.1 {
+                let off = inertia * ring.angular_acceleration + pull;
+                assert!(off.abs() < 1e-9, "{off:e} at {}", sample.time);
+            }
+        }
+        assert!(kept.largest(|s| s.energy.residual) < 1e-9 * kept.largest(|s| s.energy.kinetic));
+    }
+}
+
+#[test]
+fn a_new_press_keeps_its_energy_and_its_geometry() {
+    for engine in ENGINES {
+        let set = [engine, "solver.absolute_tolerance=scaled"];
+        let kept = simulate(&new_case("press", &set));
+        for sample in &kept.samples {
+            let (sin, cos) = body(sample, 0).angle.sin_cos();
+            let off = body(sample, 2).position[1] - 0.08 * sin + (0.16 - 0.0064 * cos * cos).sqrt();
+            assert!(off.abs() < 1e-12, "{off:e}");
+        }
+        assert!(kept.largest(|s| s.energy.load_work) > 10.0);
+        assert!(kept.largest(|s| s.energy.dissipated) > 0.1);
+        let kinetic = kept.largest(|s| s.energy.kinetic);
+        assert!(kept.largest(|s| s.energy.residual) < 1e-8 * kinetic, "{engine}");
+    }
+}
+
+#[test]
+fn a_new_crank_comes_to_the_speed_that_its_controller_is_asked_for() {
+    for engine in ENGINES {
+        let set = [engine, "solver.absolute_tolerance=scaled", "run.duration=0.3"];
+        let kept = simulate(&new_case("speed-controller", &set));
+        let late: Vec<f64> = kept
+            .samples
+            .iter()
+            .filter(|s| s.time > 0.26)
+            .map(|s| body(s, 0).angular_velocity)
+            .collect();
+        let mean = late.iter().sum::<f64>() / late.len() as f64;
+        assert!((mean / (50.0 * PI) - 1.0).abs() < 0.05, "{mean}");
+        let kinetic = kept.largest(|s| s.energy.kinetic);
+        assert!(kept.largest(|s| s.energy.residual) < 1e-8 * kinetic, "{engine}");
+    }
+}
+
+#[test]
+fn a_new_manipulator_stands_where_its_motors_have_it() {
+    let with_clearance = case("src/cli/new/three-rrr.toml", &["run.duration=0.02"]);
+    for (kept, allowed) in
+        [(simulate(&new_case("three-rrr", &[])), 1e-12), (simulate(&with_clearance), 1.1e-4)]
+    {
+        let mut largest = 0.0_f64;
+        for sample in &kept.samples {
+            let BodyObservation { position: [x, y], angle, .. } = body(sample, 6);
+            for leg in 0..3 {
+                let crank = body(sample, 2 * leg);
+                let elbow = [0, 1].map(|axis| {
+                    let along = [crank.angle.cos(), crank.angle.sin()][axis];
+                    crank.position[axis] + 0.06 * along
+                });
+                let place = angle + [7.0 / 6.0, -1.0 / 6.0, 0.5][leg] * PI;
+                let joint = [x + 0.06 * place.cos(), y + 0.06 * place.sin()];
+                let length = (joint[0] - elbow[0]).hypot(joint[1] - elbow[1]);
+                largest = largest.max((length - 0.16).abs());
+            }
+        }
+        // the case has the platform's points to 1e-6 m
+        assert!(largest < allowed + 1e-6, "{largest:e}");
+        assert!(allowed < 1e-6 || largest > 1e-5, "{largest:e}");
+    }
+}
+
 #[test]
 fn both_engines_agree_where_every_load_acts() {
     let [explicit, ida] =

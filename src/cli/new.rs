@@ -39,6 +39,20 @@ enum Kind {
     DoublePendulum,
     /// A shaft that falls in its bearing.
     JournalInBearing,
+    /// A crank's pin in the slot of a yoke.
+    ScotchYoke,
+    /// A crank turns a slotted lever, which pushes a ram.
+    QuickReturn,
+    /// Two cranks with a motor each, and rods that meet.
+    FiveBar,
+    /// 3-RRR manipulator, clearance in the joints of its platform.
+    ThreeRrr,
+    /// Crank-rocker turned by a motor with a speed controller, clearance between crank and coupler.
+    SpeedController,
+    /// Sun, planet, and a ring on a torsion spring.
+    PlanetaryGear,
+    /// Crank press with a flywheel and a torque drive, clearance at the wrist pin.
+    Press,
     /// Four-bars in a row, `--count` of them; ideal joints.
     FourBars,
 }
@@ -57,6 +71,15 @@ impl Kind {
             Kind::JournalInBearing => {
                 ("journal-in-bearing.toml", include_str!("new/journal-in-bearing.toml"))
             }
+            Kind::ScotchYoke => ("scotch-yoke.toml", include_str!("new/scotch-yoke.toml")),
+            Kind::QuickReturn => ("quick-return.toml", include_str!("new/quick-return.toml")),
+            Kind::FiveBar => ("five-bar.toml", include_str!("new/five-bar.toml")),
+            Kind::ThreeRrr => ("three-rrr.toml", include_str!("new/three-rrr.toml")),
+            Kind::SpeedController => {
+                ("speed-controller.toml", include_str!("new/speed-controller.toml"))
+            }
+            Kind::PlanetaryGear => ("planetary-gear.toml", include_str!("new/planetary-gear.toml")),
+            Kind::Press => ("press.toml", include_str!("new/press.toml")),
             Kind::FourBars => return ("four-bars.toml", four_bars::four_bars(count).into()),
         };
         (name, text.into())
