@@ -36,6 +36,7 @@ pub fn notes(case: &Case, mechanism: &Mechanism<f64>, turn: &Turn, touches: &[To
     notes.extend(lock(case, turn));
     notes.extend(touches.iter().filter_map(|touch| too_soft(mechanism, touch)));
     notes.extend(too_coarse(case, mechanism, touches));
+    notes.extend(too_late(case));
     notes
 }
 
@@ -80,6 +81,19 @@ fn too_soft(mechanism: &Mechanism<f64>, touch: &Touch) -> Option<Note> {
         );
         Note::new(format!("joints.{name}.clearance.normal"), text)
     })
+}
+
+/// Windows of samples that the run does not come to.
+fn too_late(case: &Case) -> Vec<Note> {
+    let end = case.plan.duration.to_f64();
+    let windows = case.plan.windows.iter().enumerate();
+    let late = windows.filter(|(_, window)| window.from.to_f64() >= end);
+    late.map(|(k, window)| {
+        let text =
+            format!("begins at {} s, the run ends at {end} s: it has no samples", window.from);
+        Note::new(format!("run.window.{}", k + 1), text)
+    })
+    .collect()
 }
 
 /// Samples too far apart to see a contact.

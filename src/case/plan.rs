@@ -278,10 +278,10 @@ impl Plan {
                 let message = format!("must be greater than from, {from} (s), is {to}");
                 complaints.add(key.key("to"), message);
             }
-            let around = self.sample_interval.to_f64();
+            let around = &self.sample_interval;
             if complaints.require_positive(key.key("interval"), interval, "s")
                 && interval_right
-                && interval.to_f64() > around
+                && interval.to_f64() > around.to_f64()
             {
                 let message = format!("must be at most run.sample_interval, {around} (s)");
                 complaints.add(key.key("interval"), format!("{message}, is {interval}"));

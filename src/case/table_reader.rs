@@ -590,8 +590,8 @@ impl<'d> TableReader<'d, '_> {
     ) -> Vec<T> {
         let Some(item) = self.item(key) else { return Vec::new() };
         let Some(list) = source::list_of_tables(item) else {
-            let found = describe(item);
-            self.complain(key, format!("must be a list of tables [[…{key}]], is {found}"));
+            let (path, found) = (self.path.key(key), describe(item));
+            self.complain(key, format!("must be a list of tables [[{path}]], is {found}"));
             return Vec::new();
         };
         let path = self.path.key(key);

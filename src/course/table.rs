@@ -8,7 +8,7 @@
 //! Source: see `spline.rs`.
 
 use super::{Ends, Law, Spline};
-use crate::parameter::{Key, Kind, Otherwise, Takes, Values};
+use crate::parameter::{Key, Kind, Takes, Values};
 use crate::scalar::Scalar;
 
 /// The kind and its keys.
@@ -22,27 +22,9 @@ kind = "table"
 times = [0.0, 0.01, 0.02, 0.03, 0.04]    # or file = "motion.csv", with a column of times and one of values
 values = [0.0, 0.1, 0.4, 0.9, 1.6]"#,
     keys: &[
-        Key {
-            name: "times",
-            takes: Takes::Numbers,
-            unit: "s",
-            otherwise: Otherwise::Absent,
-            about: "times, which increase; a drive's are from 0 or before to the end of the run",
-        },
-        Key {
-            name: "values",
-            takes: Takes::Numbers,
-            unit: "",
-            otherwise: Otherwise::Absent,
-            about: "values there, in the unit of what follows them (rad, m, N, N m)",
-        },
-        Key {
-            name: "file",
-            takes: Takes::File,
-            unit: "",
-            otherwise: Otherwise::Absent,
-            about: "in place of times and values: a file beside the case, a time and a value a line",
-        },
+        Key::new("times", Takes::Numbers, "s", "times, which increase; a drive's are from 0 or before to the end of the run").optional(),
+        Key::new("values", Takes::Numbers, "", "values there, in the unit of what follows them (rad, m, N, N m)").optional(),
+        Key::new("file", Takes::File, "", "in place of times and values: a file beside the case, a time and a value a line").optional(),
     ],
     also: Some(super::points),
 };

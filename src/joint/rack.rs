@@ -9,7 +9,7 @@
 
 use super::prismatic::AXIS;
 use super::{BETWEEN, Ends, Holonomic, MOST_BODIES, MOST_ROWS, Pair, between, lift, unit};
-use crate::parameter::{Key, Kind, Otherwise, Range, Takes, Values};
+use crate::parameter::{Key, Kind, Range, Takes, Values};
 use crate::plane::{Pose, Vector};
 use crate::scalar::{Lift, Scalar};
 
@@ -26,21 +26,9 @@ radius = -0.02"#,
     keys: &[
         BETWEEN,
         AXIS,
-        Key {
-            name: "radius",
-            takes: Takes::Number(Range::NotZero),
-            unit: "m",
-            otherwise: Otherwise::Required,
-            about: "travel of the second point along the axis over the angle of the second body \
-                    relative to the first",
-        },
-        Key {
-            name: "travel",
-            takes: Takes::Number(Range::Any),
-            unit: "m",
-            otherwise: Otherwise::Default("0.0"),
-            about: "travel where that angle is zero",
-        },
+        Key::new("radius", Takes::Number(Range::NotZero), "m", "travel of the second point along the axis over the angle of the second body \
+                    relative to the first"),
+        Key::new("travel", Takes::Number(Range::Any), "m", "travel where that angle is zero").or("0.0"),
     ],
     also: None,
 };

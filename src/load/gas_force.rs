@@ -13,7 +13,7 @@
 use super::{Acts, Ends, Powers};
 use crate::course::{Spline, points};
 use crate::joint::{PRISMATIC, Prismatic, Relation};
-use crate::parameter::{Key, Kind, Otherwise, Range, Takes, Values};
+use crate::parameter::{Key, Kind, Range, Takes, Values};
 use crate::plane::{Motion, Pose, Wrench};
 use crate::scalar::{Lift, Scalar};
 
@@ -29,41 +29,11 @@ area = 5e-3
 positions = [0.07, 0.08, 0.09, 0.1, 0.12, 0.14, 0.17]   # or file = "pressure.csv"
 pressures = [0.0, 0.2e5, 0.5e5, 1.0e5, 2.6e5, 6.5e5, 20e5]"#,
     keys: &[
-        Key {
-            name: "positions",
-            takes: Takes::Numbers,
-            unit: "m",
-            otherwise: Otherwise::Absent,
-            about: "travels of the slider, which increase",
-        },
-        Key {
-            name: "pressures",
-            takes: Takes::Numbers,
-            unit: "Pa",
-            otherwise: Otherwise::Absent,
-            about: "pressures there",
-        },
-        Key {
-            name: "file",
-            takes: Takes::File,
-            unit: "",
-            otherwise: Otherwise::Absent,
-            about: "in place of both: a file beside the case, a travel and a pressure a line",
-        },
-        Key {
-            name: "joint",
-            takes: Takes::Joint(&[PRISMATIC]),
-            unit: "",
-            otherwise: Otherwise::Required,
-            about: "the prismatic joint that the slider moves in",
-        },
-        Key {
-            name: "area",
-            takes: Takes::Number(Range::NotZero),
-            unit: "m²",
-            otherwise: Otherwise::Required,
-            about: "A; negative where the gas pushes towards smaller travels",
-        },
+        Key::new("positions", Takes::Numbers, "m", "travels of the slider, which increase").optional(),
+        Key::new("pressures", Takes::Numbers, "Pa", "pressures there").optional(),
+        Key::new("file", Takes::File, "", "in place of both: a file beside the case, a travel and a pressure a line").optional(),
+        Key::new("joint", Takes::Joint(&[PRISMATIC]), "", "the prismatic joint that the slider moves in"),
+        Key::new("area", Takes::Number(Range::NotZero), "m²", "A; negative where the gas pushes towards smaller travels"),
     ],
     also: Some(points),
 };

@@ -15,7 +15,7 @@
 use super::{Acts, Ends};
 use crate::friction::{self, Friction, FrictionLaw, MOST_INNER, Sloped};
 use crate::joint::{PRISMATIC, Pair, Prismatic, REVOLUTE, Relation};
-use crate::parameter::{Key, Kind, Otherwise, Range, Takes, Values};
+use crate::parameter::{Key, Kind, Range, Takes, Values};
 use crate::plane::{Motion, Pose, Vector, Wrench};
 use crate::scalar::{Lift, Scalar};
 
@@ -30,34 +30,10 @@ joint = "B0"
 friction = { law = "tanh", coefficient = 0.1, transition = 1e-3 }
 pin_radius = 0.01"#,
     keys: &[
-        Key {
-            name: "joint",
-            takes: Takes::Joint(&[REVOLUTE, PRISMATIC]),
-            unit: "",
-            otherwise: Otherwise::Required,
-            about: "the joint, ideal, revolute or prismatic",
-        },
-        Key {
-            name: "friction",
-            takes: Takes::Friction,
-            unit: "",
-            otherwise: Otherwise::Required,
-            about: "its law: one of those that follow the slip smoothly",
-        },
-        Key {
-            name: "pin_radius",
-            takes: Takes::Number(Range::Positive),
-            unit: "m",
-            otherwise: Otherwise::Absent,
-            about: "radius r of the pin of a revolute joint",
-        },
-        Key {
-            name: "preload",
-            takes: Takes::Number(Range::NotNegative),
-            unit: "N",
-            otherwise: Otherwise::Default("0.0"),
-            about: "N₀, the normal force where the joint carries nothing",
-        },
+        Key::new("joint", Takes::Joint(&[REVOLUTE, PRISMATIC]), "", "the joint, ideal, revolute or prismatic"),
+        Key::new("friction", Takes::Friction, "", "its law: one of those that follow the slip smoothly"),
+        Key::new("pin_radius", Takes::Number(Range::Positive), "m", "radius r of the pin of a revolute joint").optional(),
+        Key::new("preload", Takes::Number(Range::NotNegative), "N", "N₀, the normal force where the joint carries nothing").or("0.0"),
     ],
     also: None,
 };

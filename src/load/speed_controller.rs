@@ -10,7 +10,7 @@
 
 use super::{Acts, Ends, torque_on_second};
 use crate::joint::REVOLUTE;
-use crate::parameter::{Key, Kind, Otherwise, Range, Takes, Values};
+use crate::parameter::{Key, Kind, Range, Takes, Values};
 use crate::plane::{Motion, Pose, Wrench};
 use crate::scalar::{Lift, Scalar};
 
@@ -27,41 +27,11 @@ proportional = 0.5
 integral = 20.0
 limit = 50.0"#,
     keys: &[
-        Key {
-            name: "joint",
-            takes: Takes::Joint(&[REVOLUTE]),
-            unit: "",
-            otherwise: Otherwise::Required,
-            about: "the revolute joint whose second body it turns, against the first",
-        },
-        Key {
-            name: "speed_rpm",
-            takes: Takes::Number(Range::Any),
-            unit: "revolutions a minute",
-            otherwise: Otherwise::Required,
-            about: "Ω, the speed asked for",
-        },
-        Key {
-            name: "proportional",
-            takes: Takes::Number(Range::NotNegative),
-            unit: "N m s",
-            otherwise: Otherwise::Required,
-            about: "K_p",
-        },
-        Key {
-            name: "integral",
-            takes: Takes::Number(Range::NotNegative),
-            unit: "N m",
-            otherwise: Otherwise::Default("0.0"),
-            about: "K_i",
-        },
-        Key {
-            name: "limit",
-            takes: Takes::Number(Range::Positive),
-            unit: "N m",
-            otherwise: Otherwise::Absent,
-            about: "L, the largest torque; left out: none",
-        },
+        Key::new("joint", Takes::Joint(&[REVOLUTE]), "", "the revolute joint whose second body it turns, against the first"),
+        Key::new("speed_rpm", Takes::Number(Range::Any), "revolutions a minute", "Ω, the speed asked for"),
+        Key::new("proportional", Takes::Number(Range::NotNegative), "N m s", "K_p"),
+        Key::new("integral", Takes::Number(Range::NotNegative), "N m", "K_i").or("0.0"),
+        Key::new("limit", Takes::Number(Range::Positive), "N m", "L, the largest torque; left out: none").optional(),
     ],
     also: None,
 };

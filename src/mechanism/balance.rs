@@ -78,6 +78,7 @@ impl<S: Scalar> Mechanism<S> {
     /// ```
     /// Friction in joints is part of Q, and depends on λ.
     pub(super) fn solve(&mut self) -> Result<(), Fault> {
+        self.find_rubbing();
         self.accelerate();
         if self.layout.rows > 0 {
             self.factor().map_err(|singular| self.singular(singular))?;

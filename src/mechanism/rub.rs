@@ -82,7 +82,7 @@ pub(super) fn rubbings<S: Scalar>(model: &Model<S>, layout: &Layout<S>) -> Vec<R
 
 impl<S: Scalar> Mechanism<S> {
     /// Finds what one newton of each joint's normal force does, as placed; the forces are zero yet.
-    fn find_rubbing(&mut self) {
+    pub(super) fn find_rubbing(&mut self) {
         let now = &mut self.now;
         now.rubbed.clear();
         for rubbing in &self.rubbings {
@@ -124,9 +124,8 @@ impl<S: Scalar> Mechanism<S> {
     }
 
     /// Changes multipliers without friction into those with it, and adds the friction to the wrenches.
-    /// The mass–constraint matrix stands factored.
+    /// The mass–constraint matrix stands factored, and what rubs is found.
     pub(super) fn rub(&mut self) -> Result<(), Fault> {
-        self.find_rubbing();
         let held: Vec<(usize, usize)> = (self.rubbings.iter().enumerate())
             .filter_map(|(k, rubbing)| match rubbing.at {
                 Site::Constraint(row) => Some((k, row)),
