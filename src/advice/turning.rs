@@ -5,7 +5,7 @@ use crate::case::{self, Case};
 use crate::course::Course;
 use crate::dae::Fault;
 use crate::mechanism::Mechanism;
-use crate::run::Assembled;
+use crate::run::{Assembled, Undecided};
 use crate::simulate::{assemble, ideal_case};
 use std::f64::consts::TAU;
 
@@ -120,7 +120,14 @@ fn locked(
     fault: Fault,
     forces: Vec<(String, f64)>,
 ) -> Turn {
-    for _ in 0..HALVINGS {
+    let stands = match &fault {
+        Fault::Fatal(error) => error.downcast_ref::<Undecided>().map(|undecided| undecided.time),
+        Fault::TryShorterStep(_) => None,
+    };
+    // where it got no further after thousands of parts, halving would take them again and again
+    let halvings = if stands.is_some() { 0 } else { HALVINGS };
+    from = stands.unwrap_or(from);
+    for _ in 0..halvings {
         let middle = 0.5 * (from + to);
         let mut next = at.clone();
         match next.observe(middle) {

@@ -144,6 +144,8 @@ fn open(
     // what is no result of ours is not in the way either, or is said to exist below
     let there = ResultFile::open(output).ok();
     if there.as_ref().is_some_and(|there| record::is_whole(there, &case.text)) {
+        // as long as it is open, no other name of the same file can be locked
+        drop(there);
         record::tidy(output);
         return Ok(None);
     }

@@ -296,9 +296,9 @@ const ROUNDING: f64 = 1e3;
     "the mechanism passes a dead centre at t = {time:e} s so closely that this arithmetic cannot \
      tell on which side it goes on"
 )]
-struct Undecided {
+pub struct Undecided {
     /// Where it stands (s).
-    time: f64,
+    pub time: f64,
 }
 
 /// Moves a state to another time if its prediction was near enough and on its branch, or leaves it.

@@ -19,7 +19,7 @@ mod witness;
 
 pub use checkpoint::{Checkpoint, Checkpoints, NotACheckpoint, Reached, Stretch};
 pub use extremes::LEFT_OUT;
-pub use kinematic::{Assembled, TooFar, kinematic};
+pub use kinematic::{Assembled, TooFar, Undecided, kinematic};
 pub use recorder::*;
 pub use schedule::{SampleWindow, Schedule};
 pub use trajectory::Trajectory;
