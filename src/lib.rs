@@ -41,6 +41,7 @@ pub mod case;
 pub mod simulate;
 pub mod advice;
 pub mod certify;
+pub mod chaos;
 pub mod post;
 pub mod export;
 pub mod study;

@@ -8,6 +8,7 @@ mod export;
 mod impact;
 mod info;
 mod laws;
+mod lyapunov;
 mod man;
 mod new;
 mod plot;
@@ -44,6 +45,8 @@ enum Command {
     Run(run::Arguments),
     /// Say how many digits of a run are true, against references in 71-digit arithmetic.
     Certify(certify::Arguments),
+    /// Say how fast small differences grow: Lyapunov exponents, in e-folds per revolution.
+    Lyapunov(lyapunov::Arguments),
     /// Say what a case describes: freedoms, constraints, stiffnesses, defaults, decisions.
     Check(check::Arguments),
     /// Say what a result file holds and how it was made.
@@ -199,6 +202,7 @@ pub fn main() -> ExitCode {
         Command::New(arguments) => new::new(&arguments),
         Command::Run(arguments) => run::run(&arguments),
         Command::Certify(arguments) => certify::certify(&arguments),
+        Command::Lyapunov(arguments) => lyapunov::lyapunov(&arguments),
         Command::Check(arguments) => check::check(&arguments),
         Command::Info(arguments) => info::info(&arguments),
         Command::Summary(arguments) => summary::summary(&arguments),

@@ -179,6 +179,14 @@ impl<S: Scalar> Mechanism<S> {
         let (mut q, mut v) = (self.start.q.clone(), self.start.v.clone());
         disturb(&mut q, &self.coordinate_scales);
         disturb(&mut v, &self.velocity_scales);
+        self.move_start(q, v)
+    }
+
+    /// Moves the start to these coordinates and velocities, and back onto the constraints.
+    ///
+    /// # Errors
+    /// The mechanism cannot be evaluated there.
+    pub fn move_start(&mut self, mut q: Vec<S>, mut v: Vec<S>) -> Result<(), Vec<Complaint>> {
         self.project(S::zero(), &mut q, &mut v).map_err(start_fault)?;
         self.modes.fill(Mode::Flight);
         // the run is to differ by its start alone

@@ -73,6 +73,24 @@ impl<S: Scalar> Checkpoint<S> {
         self.state.time
     }
 
+    /// The state, on the constraints.
+    pub fn state(&self) -> &Snapshot<S> {
+        &self.state
+    }
+
+    /// All numbers that the motion goes on from: coordinates and velocities, behind them inner states and
+    /// the impact rates that contacts remember.
+    pub(crate) fn carried_mut(&mut self) -> Vec<&mut S> {
+        let Snapshot { q, v, z, .. } = &mut self.state;
+        let rates = self.modes.iter_mut().flat_map(|mode| match mode {
+            Mode::Flight => None,
+            Mode::Contact(contact) => {
+                Some([&mut contact.impact_rate, &mut contact.inverse_impact_rate])
+            }
+        });
+        q.iter_mut().chain(v).chain(z).chain(rates.flatten()).collect()
+    }
+
     /// What the engines counted since the run began.
     pub fn work(&self) -> &[u64] {
         &self.work
