@@ -5,7 +5,7 @@ source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
 # without its recommended packages Octave has nothing to draw with: gnuplot draws, in FreeSans, and
 # ghostscript makes the PNG of it
 need_packages "${BUILD_PACKAGES[@]}" hdf5-tools netcdf-bin octave octave-netcdf \
-    gnuplot-nox fonts-freefont-otf ghostscript python3-venv chromium
+    gnuplot-nox fonts-freefont-otf ghostscript parallel python3-venv chromium
 need_rust rustfmt clippy
 need_python
 need_browser_driver
