@@ -202,7 +202,13 @@ pub fn assemble<S: Scalar>(case: &Case) -> Result<Mechanism<S>, case::Error> {
         Journals::Centred => Vec::new(),
         journals => offsets_under_load(case, journals)?,
     };
-    Mechanism::with_journals_at(model, &offsets).map_err(|complaints| case.reject(complaints))
+    let mechanism = Mechanism::with_journals_at(model, &offsets);
+    let mut mechanism = mechanism.map_err(|complaints| case.reject(complaints))?;
+    if let Some(share) = &case.plan.disturbance {
+        let disturbed = mechanism.disturb_start(share.value());
+        disturbed.map_err(|complaints| case.reject(complaints))?;
+    }
+    Ok(mechanism)
 }
 
 /// Where in their bearings journals lie under the forces of the ideal mechanism at t = 0 (m): opposite
@@ -240,7 +246,10 @@ pub fn ideal_case(case: &Case) -> Result<Case, case::Error> {
     let path = PathBuf::from(format!("{}.toml", case.name));
     let changed = |more: &mut dyn Iterator<Item = String>| {
         let doubles = std::iter::once("solver.precision=16".to_owned());
-        let set = doubles.chain(more).filter_map(|change| change.parse().ok()).collect();
+        // what prescribes everything cannot be disturbed, and copies of a run share their ideal
+        let same = case.plan.disturbance.as_ref().map(|_| "run.disturbance=0".to_owned());
+        let set =
+            doubles.chain(same).chain(more).filter_map(|change| change.parse().ok()).collect();
         Case::from_text(&path, &case.text, &Changes { set, ideal: true })
     };
     let ideal = changed(&mut std::iter::empty())?;

@@ -98,7 +98,7 @@ fn a_run_of_a_study_is_the_run_by_itself_to_the_last_bit() {
     let of_revolutions = ["columns.joint_force.A.largest.value", "clearances.A.contacts"];
     let more = format!(
         "[[vary]]\nkey = \"joints.A.clearance.radial\"\nvalues = [1e-4, 5e-4]\n\
-         [span]\nrevolutions = 3.5\ndiscard = 1\n\
+         [span]\nrevolutions = 3.5\n\
          [keep]\nruns = {paths:?}\nrevolutions = {of_revolutions:?}\nhorizon = true\nfiles = true\n\
          [section]\nangle = 1.0\ncolumns = [\"clearance_x.A\", \"joint_force_y.B0\", \"energy_kinetic\"]\n"
     );
@@ -107,7 +107,7 @@ fn a_run_of_a_study_is_the_run_by_itself_to_the_last_bit() {
     let (heads, rows) = desk.csv("made", "runs");
     assert_eq!(heads[..3], ["run", "joints.A.clearance.radial", "case_sha256"]);
     let (_, revolutions) = desk.csv("made", "revolutions");
-    assert_eq!(revolutions.len(), 2 * 3);
+    assert_eq!(revolutions.len(), 2 * 4);
     for (run, radial) in ["0.0001", "0.0005"].into_iter().enumerate() {
         let radial = format!("joints.A.clearance.radial={radial}");
         let set = [FAST[0], FAST[1], "run.revolutions=3.5", &radial];
@@ -133,7 +133,7 @@ fn a_run_of_a_study_is_the_run_by_itself_to_the_last_bit() {
         assert_eq!(Some(rows[run][2].as_str()), own.text("case_sha256"));
         for row in revolutions.iter().filter(|row| row[0] == run.to_string()) {
             let k: usize = row[2].parse().unwrap();
-            assert!((1..4).contains(&k));
+            assert!((0..4).contains(&k));
             let force = &summary["columns"]["joint_force.A"]["revolutions"][k]["largest"]["value"];
             let contacts = &summary["clearances"]["A"]["revolutions"][k]["contacts"];
             assert_eq!(number(&row[5]), force.as_f64().unwrap());
@@ -144,6 +144,45 @@ fn a_run_of_a_study_is_the_run_by_itself_to_the_last_bit() {
         let kept = freeplay::record::ResultFile::open(&kept).unwrap();
         assert!(kept.is_complete());
         assert_eq!(kept.column("energy_kinetic").unwrap(), own.column("energy_kinetic").unwrap());
+    }
+}
+
+#[test]
+fn numbers_of_a_run_are_those_behind_what_is_left_out() {
+    let more = |discard: u64| {
+        format!(
+            "[[vary]]\nkey = \"joints.A.clearance.radial\"\nvalues = [2e-4, 1e-3]\n\
+             [span]\nrevolutions = 5\ndiscard = {discard}\n\
+             [keep]\nruns = [\"columns.joint_force.A.largest\", \"clearances.A.contacts\", \
+             \"clearances.A.share_in_contact\", \"energy.energy_dissipated\", \"energy.drive_work\"]\n\
+             revolutions = [\"columns.joint_force.A.largest\", \"clearances.A.contacts\", \
+             \"clearances.A.share_in_contact\"]\n"
+        )
+    };
+    let [whole, behind, two] = [0, 2, 0].map(|discard| Desk::new("four-bar-a", &more(discard)));
+    let text = fs::read_to_string(two.path("study.toml")).unwrap();
+    fs::write(two.path("study.toml"), text.replace("revolutions = 5", "revolutions = 2")).unwrap();
+    for desk in [&whole, &behind, &two] {
+        assert_code(&desk.sweep("--csv -o made"), 0);
+    }
+    let rows = |desk: &Desk| desk.csv("made", "runs").1;
+    let (_, revolutions) = whole.csv("made", "revolutions");
+    for run in 0..2 {
+        let [whole, behind, two] = [&whole, &behind, &two].map(|desk| rows(desk)[run].clone());
+        let its = revolutions.iter().filter(|row| row[0] == run.to_string()).skip(2);
+        let its: Vec<[f64; 3]> = its.map(|row| [5, 6, 7].map(|k| number(&row[k]))).collect();
+        assert_eq!(its.len(), 3);
+        let largest = its.iter().map(|row| row[0]).fold(0.0, f64::max);
+        let contacts: f64 = its.iter().map(|row| row[1]).sum();
+        let share = its.iter().map(|row| row[2]).sum::<f64>() / 3.0;
+        assert_eq!([number(&behind[3]), number(&behind[4])], [largest, contacts]);
+        let share_behind = number(&behind[5]);
+        assert!((share_behind - share).abs() < 1e-12, "{share_behind} {share}");
+        // works add up
+        for column in [6, 7] {
+            let [all, late, early] = [&whole, &behind, &two].map(|row| number(&row[column]));
+            assert!((all - late - early).abs() < 1e-9 * all.abs(), "{all} {late} {early}");
+        }
     }
 }
 
@@ -423,6 +462,217 @@ fn samples_are_those_of_their_distributions_and_keys_go_together() {
     }
 }
 
+/// A mass in a slot of 2 · 10 mm, with walls that it rebounds at, which a harmonic drive shakes along x.
+const SLOT: &str = "[ground]\npoints = { P = [0.0, 0.0] }\n\
+    [bodies.slot]\nmass = 1.0\ninertia = 0.01\npoints = { C = [0.0, 0.0] }\n\
+    [bodies.mass]\nmass = 0.05\ninertia = 1e-4\npoints = { C = [0.0, 0.0] }\n\
+    [joints.rail]\nkind = \"prismatic\"\nbetween = [\"ground.P\", \"slot.C\"]\naxis = [1.0, 0.0]\n\
+    [joints.guide]\nkind = \"prismatic\"\nbetween = [\"slot.C\", \"mass.C\"]\naxis = [1.0, 0.0]\n\
+    [joints.walls]\nkind = \"revolute\"\nbetween = [\"slot.C\", \"mass.C\"]\n\
+    [joints.walls.clearance]\nbearing_radius = 0.1\nradial = 0.01\n\
+    normal = { law = \"lankarani-nikravesh\", restitution = 0.5, stiffness = 1e10 }\n\
+    [drives.shake]\njoint = \"rail\"\nkind = \"harmonic\"\namplitude = 0.02\nangular_frequency = 40.0\n\
+    phase = -1.5707963267948966\n\
+    [start]\nmass = { x = 0.0, velocity_x = 0.3, fixed = true }\n\
+    [run]\nduration = 9.4247779608\nsample_interval = 0.1\n";
+
+#[test]
+fn periods_and_exponents_of_a_study_are_those_of_single_runs() {
+    let more = "[[vary]]\nkey = \"drives.shake.amplitude\"\nvalues = [0.006, 0.01, 0.02, 0.03]\n\
+                [span]\ndiscard = 30\n\
+                [keep]\nruns = [\"clearances.walls.contacts\"]\nrevolutions = []\nexponents = 2\n\
+                [attractor]\ntolerance = 1e-4\nlongest = 4\n\
+                [section]\ncolumns = [\"clearance_x.walls\", \"velocity_x.mass\"]\n";
+    let desk = Desk::new("pendulum", more);
+    fs::write(desk.path("slot.toml"), SLOT).unwrap();
+    let text = fs::read_to_string(desk.path("study.toml")).unwrap();
+    let (_, rest) = text.split_once("set = ").unwrap();
+    fs::write(desk.path("study.toml"), format!("case = \"slot.toml\"\nset = {rest}")).unwrap();
+    assert_code(&desk.sweep("--csv -o made"), 0);
+    let (heads, rows) = desk.csv("made", "runs");
+    let column = |name: &str| heads.iter().position(|head| head == name).unwrap();
+    let (_, sections) = desk.csv("made", "sections");
+    let mut periodic = 0;
+    for (run, row) in rows.iter().enumerate() {
+        let of = |name: &str| number(&row[column(name)]);
+        // what the section points themselves say of the period
+        let its: Vec<[f64; 2]> = sections
+            .iter()
+            .filter(|point| point[0] == run.to_string())
+            // the drive passes zero at the ends of its periods, and half way
+            .filter(|point| (number(&point[3]) * 40.0).cos() > 0.0)
+            .map(|point| [number(&point[4]) / 0.01, number(&point[5]) / 4.0])
+            .collect();
+        let last = &its[its.len() - 4..];
+        let comes_back = |period: usize| {
+            let before = &its[its.len() - 4 - period..its.len() - period];
+            let pairs = last.iter().zip(before);
+            pairs.map(|(a, b)| (a[0] - b[0]).abs().max((a[1] - b[1]).abs())).fold(0.0, f64::max)
+        };
+        let period = (1..=4).find(|period| comes_back(*period) < 1e-4);
+        assert_eq!(of("attractor.revolutions"), period.unwrap_or(0) as f64, "run {run}: {row:?}");
+        assert_eq!(of("attractor.always_in_contact.walls"), 0.0);
+        // the sum is that of the impacts
+        let impacts = of("clearances.walls.contacts") / 30.0;
+        let expected = 2.0 * impacts * 0.725_241_114_010_197_f64.ln();
+        let sum = of("lyapunov.sum.value");
+        assert!((sum - expected).abs() < 0.02 * expected.abs(), "{sum} {expected}");
+        let [first, second] = [1, 2].map(|k| of(&format!("lyapunov.{k}.value")));
+        assert!(first >= second && (first + second - sum).abs() < 1e-9 * sum.abs());
+        // a motion that comes back is stable, one that is chaotic does not come back
+        if period.is_some() {
+            periodic += 1;
+            assert!(first < 0.0, "run {run}: {row:?}");
+            assert_eq!(of("lyapunov.kaplan_yorke.value"), 0.0);
+        } else {
+            assert!(first > 0.5, "run {run}: {row:?}");
+        }
+        // as the command by itself has it
+        let case = desk.path("slot.toml");
+        let amplitude = format!("drives.shake.amplitude={}", row[1]);
+        let mut own = Command::new(env!("CARGO_BIN_EXE_freeplay"));
+        own.arg("lyapunov").arg(&case).args(["--exponents", "all", "--json", "-q"]);
+        own.args(["--revolutions", "60", "--discard", "30", "--set", &amplitude]);
+        own.args(FAST.iter().flat_map(|change| ["--set", change]));
+        let said = {
+            let _alone = alone();
+            own.output().unwrap()
+        };
+        assert_code(&said, 0);
+        let told: Value = serde_json::from_slice(&said.stdout).unwrap();
+        assert_eq!(told["exponents"][0]["per_revolution"].as_f64(), Some(first));
+        assert_eq!(told["exponents"][1]["half_width"].as_f64(), Some(of("lyapunov.2.half_width")));
+        assert_eq!(told["zero"]["autonomous"], false);
+    }
+    // the first three as hard walls have it: a fixed point, its period doubled, chaos
+    let periods: Vec<f64> =
+        rows.iter().map(|row| number(&row[column("attractor.revolutions")])).collect();
+    assert_eq!(periods[..3], [1.0, 2.0, 0.0]);
+    assert!(periodic >= 2);
+    // ... and drawn
+    let _alone = alone();
+    let mut plot = Command::new(env!("CARGO_BIN_EXE_freeplay"));
+    plot.args(["plot", "made", "-o", "figures"]).current_dir(desk.0.path());
+    assert_code(&plot.output().unwrap(), 0);
+    let svg = fs::read_to_string(desk.path("figures/exponents.svg")).unwrap();
+    assert!(svg.contains("e-folds per revolution") && svg.contains("95 % intervals"));
+    assert!(desk.path("figures/response-attractor.revolutions.svg").exists());
+    assert!(!desk.path("figures/response-lyapunov.1.svg").exists());
+}
+
+#[test]
+fn basins_are_a_study_of_two_keys_by_period() {
+    let more = "[[vary]]\nkey = \"start.mass.velocity_x\"\nfrom = -1.0\nto = 1.0\ncount = 4\n\
+                [[vary]]\nkey = \"start.mass.x\"\nfrom = -0.008\nto = 0.008\ncount = 3\n\
+                [span]\ndiscard = 12\n[keep]\nruns = [\"end\"]\n\
+                [attractor]\ntolerance = 1e-2\nlongest = 4\n";
+    let desk = Desk::new("pendulum", more);
+    fs::write(desk.path("slot.toml"), SLOT).unwrap();
+    let text = fs::read_to_string(desk.path("study.toml")).unwrap();
+    let (_, rest) = text.split_once("set = [").unwrap();
+    let set = "set = [\"run.duration=3.77\", ";
+    fs::write(desk.path("study.toml"), format!("case = \"slot.toml\"\n{set}{rest}")).unwrap();
+    assert_code(&desk.sweep("-o made"), 0);
+    let _alone = alone();
+    let mut plot = Command::new(env!("CARGO_BIN_EXE_freeplay"));
+    plot.args(["plot", "made", "-o", "figures"]).current_dir(desk.0.path());
+    assert_code(&plot.output().unwrap(), 0);
+    let path = desk.path("figures/heat-map-attractor.revolutions.svg");
+    assert!(fs::read_to_string(path).unwrap().contains("Period"));
+}
+
+#[test]
+fn an_ensemble_comes_to_the_distribution_of_a_long_run() {
+    let more = "[span]\nrevolutions = 16\n\
+                [keep]\nruns = [\"clearances.A.contacts\"]\n\
+                revolutions = [\"clearances.A.contacts\", \"clearances.A.share_in_contact\"]\n\
+                [ensemble]\ncopies = 60\nspread = 1e-9\nlong = 200\nseed = 2\n";
+    let desk = Desk::new("four-bar-a", more);
+    assert_code(&desk.sweep("--jobs 2 --csv -o made"), 0);
+    let (heads, rows) = desk.csv("made", "ensemble");
+    let column = |name: &str| {
+        let name = format!("clearances.A.share_in_contact.value.{name}");
+        heads.iter().position(|head| *head == name).unwrap()
+    };
+    assert_eq!(heads[..2], ["run", "revolution"]);
+    assert_eq!(rows.len(), 16);
+    let of = |k: usize, name: &str| number(&rows[k][column(name)]);
+    // one of the copies is the run that the case with its disturbance is
+    let (_, runs) = desk.csv("made", "runs");
+    assert_eq!((runs.len(), runs[0][1].as_str()), (61, "0.0"));
+    let (_, revolutions) = desk.csv("made", "revolutions");
+    assert_eq!(revolutions.len(), 200 + 60 * 16);
+    let spread: Vec<f64> = runs[1..].iter().map(|row| number(&row[1])).collect();
+    let deviation = (spread.iter().map(|x| x * x).sum::<f64>() / 60.0).sqrt();
+    assert!((deviation / 1e-9 - 1.0).abs() < 0.3, "{deviation:e}");
+    // means are those of the rows of the copies
+    for k in [0, 7, 15] {
+        let its: Vec<f64> = revolutions[200..]
+            .iter()
+            .filter(|row| row[2] == k.to_string())
+            .map(|row| number(&row[6]))
+            .collect();
+        assert_eq!(its.len(), 60);
+        assert!((of(k, "mean") - its.iter().sum::<f64>() / 60.0).abs() < 1e-14);
+        assert!(of(k, "q05") <= of(k, "q50") && of(k, "q50") <= of(k, "q95"));
+    }
+    // they begin as one; 4.3 e-folds a revolution later there is nothing left of that
+    assert!(of(0, "q95") - of(0, "q05") < 1e-3 && of(0, "mean_high") - of(0, "mean_low") < 1e-3);
+    let from = of(0, "agrees_from");
+    assert!((2.0..14.0).contains(&from), "{from}");
+    assert!(of(0, "distance") > 0.3 && of(15, "distance") < 0.3);
+    let late = (from as usize..16).filter(|k| {
+        of(*k, "mean_low") < of(*k, "long_high") && of(*k, "mean_high") > of(*k, "long_low")
+    });
+    assert!(late.count() as f64 >= 0.7 * (16.0 - from));
+    // ... and drawn
+    let _alone = alone();
+    let mut plot = Command::new(env!("CARGO_BIN_EXE_freeplay"));
+    plot.args(["plot", "made", "-o", "figures"]).current_dir(desk.0.path());
+    assert_code(&plot.output().unwrap(), 0);
+    let path = desk.path("figures/convergence-clearances.A.share_in_contact.svg");
+    let svg = fs::read_to_string(path).unwrap();
+    assert!(svg.contains("mean of the long run") && !svg.contains("NaN"));
+}
+
+#[test]
+fn the_page_of_a_study_leads_from_each_point_to_its_command() {
+    let desk = Desk::new("four-bar-a", GRID);
+    let text = fs::read_to_string(desk.path("study.toml")).unwrap();
+    fs::write(desk.path("study.toml"), format!("title = \"Speed & <clearance>\"\n{text}")).unwrap();
+    assert_code(&desk.sweep("-o made"), 4);
+    let _alone = alone();
+    let mut command = Command::new(env!("CARGO_BIN_EXE_freeplay"));
+    command.args(["report", "made", "-o", "page.html"]).current_dir(desk.0.path());
+    assert_code(&command.output().unwrap(), 0);
+    let page = fs::read_to_string(desk.path("page.html")).unwrap();
+    assert!(page.contains("<title>Speed &amp; &lt;clearance&gt;</title>"));
+    for run in 0..30 {
+        assert_eq!(page.matches(&format!("id=\"run-{run}\"")).count(), 1, "run {run}");
+    }
+    let points = page.matches("<a href=\"#run-7\">").count();
+    assert!(points >= 5, "run 7 has {points} points");
+    assert!(page.contains("must be less than bearing_radius"));
+    assert!(page.contains("data:image/svg+xml;base64,") && !page.contains("NaN"));
+    // the command of a row makes the run
+    let (_, behind) = page.split_once("id=\"run-7\"").unwrap();
+    let (command, _) = behind.split_once("<code>").unwrap().1.split_once("</code>").unwrap();
+    let command = command
+        .replace("&#39;", "'")
+        .replace("&quot;", "\"")
+        .replace("freeplay", env!("CARGO_BIN_EXE_freeplay"));
+    let line = format!("{command} -o run.h5 --quiet");
+    let said = Command::new("sh").args(["-c", &line]).current_dir(desk.0.path()).output().unwrap();
+    assert_code(&said, 0);
+    let own = freeplay::record::ResultFile::open(&desk.path("run.h5")).unwrap();
+    assert!(page.contains(&format!("--set drives.crank.speed_rpm={:?}", 2600.0)));
+    assert_eq!(own.text("run_status"), Some("complete"));
+    // it does not go over another page unasked
+    let mut again = Command::new(env!("CARGO_BIN_EXE_freeplay"));
+    again.args(["report", "made", "-o", "page.html"]).current_dir(desk.0.path());
+    assert_code(&again.output().unwrap(), 3);
+}
+
 #[test]
 fn a_study_that_is_wrong_is_told_with_its_line() {
     let vary = "[[vary]]\nkey = \"joints.A.clearance.radial\"\n";
@@ -459,6 +709,32 @@ fn a_study_that_is_wrong_is_told_with_its_line() {
             &format!("{vary}values = [1e-4]\n[section]\ncolumns = [\"angle.crnk\"]\n"),
             "section.columns",
             "angle.crank",
+        ),
+        (&format!("{vary}values = [1e-4]\n[attractor]\n"), "attractor.longest", "there are 5"),
+        (
+            &format!("{vary}values = [1e-4]\n[attractor]\ntolerance = 0\n"),
+            "line 6",
+            "attractor.tolerance: must be positive",
+        ),
+        (
+            &format!("{vary}values = [1e-4]\n[keep]\nexponents = 5\n"),
+            "keep.exponents",
+            "there are 4, twice the freedoms",
+        ),
+        (
+            "[ensemble]\ncopies = 20\nspread = 1e-6\nlong = 100\n",
+            "line 3",
+            "needs span.revolutions",
+        ),
+        (
+            "[span]\nrevolutions = 5\n[ensemble]\ncopies = 2\nspread = 1e-6\nlong = 100\n",
+            "line 5",
+            "ensemble.copies: must be from 10",
+        ),
+        (
+            &format!("{vary}values = [1e-4]\n[span]\ndiscard = 5\n"),
+            "span.discard",
+            "nothing would be left",
         ),
         (
             "[[vary]]\nkey = \"joints.A.clearance.radail\"\nvalues = [1e-4]\n",

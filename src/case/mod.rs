@@ -114,6 +114,11 @@ pub struct Template {
 }
 
 impl Template {
+    /// Where it was read.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
     /// Reads a case file.
     ///
     /// # Errors

@@ -12,6 +12,9 @@ const MOST_SAMPLES: f64 = 1e8;
 /// Checkpoints that a run may have at most.
 const MOST_CHECKPOINTS: f64 = 1e4;
 
+/// Share by which a start may be changed at most: more of it is another start.
+const LARGEST_DISTURBANCE: f64 = 0.1;
+
 /// Smallest relative tolerance of an engine that computes in doubles.
 const SMALLEST_RELATIVE_TOLERANCE: f64 = 1e-15;
 
@@ -37,6 +40,9 @@ pub struct Plan {
     pub sampling: Sampling,
     /// Time between checkpoints (s); `None` without any.
     pub checkpoint_interval: Option<Decimal>,
+    /// Share by which the start is changed ([`disturb_start`](crate::mechanism::Mechanism::disturb_start));
+    /// `None` leaves it.
+    pub disturbance: Option<Decimal>,
     /// How it is solved.
     pub solver: SolverPlan,
 }
@@ -129,22 +135,30 @@ impl NormName {
 impl Plan {
     /// Reads the keys `run` and `solver` of a case's root.
     pub(super) fn read(root: &mut TableReader) -> Plan {
-        let (revolutions, duration, sample_interval, windows, sampling, checkpoint_interval) = root
-            .table("run", |keys| {
-                let revolutions: Option<Decimal> = keys.optional("revolutions", "");
-                let duration = match revolutions {
-                    Some(_) => keys.optional("duration", "s"),
-                    None => Some(keys.required("duration", "s")),
-                };
-                (
-                    revolutions,
-                    duration,
-                    keys.required("sample_interval", "s"),
-                    keys.list_of_tables("window", window),
-                    keys.choice("sampling", &Sampling::ALL, Some("uniform")),
-                    keys.optional("checkpoint_interval", "s"),
-                )
-            });
+        let (
+            revolutions,
+            duration,
+            sample_interval,
+            windows,
+            sampling,
+            checkpoint_interval,
+            disturbance,
+        ) = root.table("run", |keys| {
+            let revolutions: Option<Decimal> = keys.optional("revolutions", "");
+            let duration = match revolutions {
+                Some(_) => keys.optional("duration", "s"),
+                None => Some(keys.required("duration", "s")),
+            };
+            (
+                revolutions,
+                duration,
+                keys.required("sample_interval", "s"),
+                keys.list_of_tables("window", window),
+                keys.choice("sampling", &Sampling::ALL, Some("uniform")),
+                keys.optional("checkpoint_interval", "s"),
+                keys.optional("disturbance", ""),
+            )
+        });
         Plan {
             duration: duration.unwrap_or_else(|| Decimal::from(f64::NAN)),
             revolutions,
@@ -152,6 +166,7 @@ impl Plan {
             windows,
             sampling: sampling.unwrap_or(Sampling::Uniform),
             checkpoint_interval,
+            disturbance,
             solver: root.table_of_defaults("solver", SolverPlan::read),
         }
     }
@@ -201,6 +216,13 @@ impl Plan {
         if self.revolutions.is_none() || !self.duration.to_f64().is_nan() {
             self.check_samples(&mut complaints);
             self.check_checkpoints(&mut complaints);
+        }
+        if let Some(share) = &self.disturbance
+            && !(share.to_f64().abs() <= LARGEST_DISTURBANCE)
+        {
+            let key = KeyPath::new(["run", "disturbance"]);
+            let limit = format!("must be from -{LARGEST_DISTURBANCE} to {LARGEST_DISTURBANCE}");
+            complaints.add(key, format!("{limit}, a share of the start, is {share}"));
         }
         self.solver.check_tolerances(&mut complaints);
         self.solver.check_steps(&mut complaints, self.first_sample());

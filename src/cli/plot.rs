@@ -150,12 +150,12 @@ pub(super) fn plot(arguments: &Arguments) -> Result<(), Failure> {
 /// Something was asked for together with the folder of a study.
 #[derive(Debug, thiserror::Error)]
 #[error("{} is a folder: a study is drawn by itself", path.display())]
-struct NotByItself {
+pub(super) struct NotByItself {
     path: PathBuf,
 }
 
 /// The folder of the study that is to be drawn, if it is one.
-fn study_folder(files: &[PathBuf]) -> Result<Option<&Path>, NotByItself> {
+pub(super) fn study_folder(files: &[PathBuf]) -> Result<Option<&Path>, NotByItself> {
     match (files, files.iter().find(|path| path.is_dir())) {
         (_, None) => Ok(None),
         ([folder], Some(_)) => Ok(Some(folder)),

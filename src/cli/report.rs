@@ -1,14 +1,16 @@
 //! `freeplay report FILE…`
 
+use super::plot::study_folder;
 use super::{Failure, signals};
 use crate::record::ResultFile;
-use crate::report::Report;
-use std::path::PathBuf;
+use crate::report::{Report, StudyPage};
+use crate::study::Recorded;
+use std::path::{Path, PathBuf};
 
 /// Arguments of `report`.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// Result files (HDF5): one run, or several to be compared.
+    /// Result files (HDF5): one run, or several to be compared. Or the folder of a study.
     #[arg(value_name = "FILE", required = true)]
     files: Vec<PathBuf>,
     /// Page to write (HTML).
@@ -25,6 +27,9 @@ pub struct Arguments {
 /// Writes a page on one or several runs.
 pub(super) fn report(arguments: &Arguments) -> Result<(), Failure> {
     signals::end_at_once()?;
+    if let Some(folder) = study_folder(&arguments.files).map_err(Failure::input)? {
+        return report_study(arguments, folder);
+    }
     let files: Vec<ResultFile> = arguments
         .files
         .iter()
@@ -36,4 +41,16 @@ pub(super) fn report(arguments: &Arguments) -> Result<(), Failure> {
     let runs = if files.len() == 1 { "1 run".to_owned() } else { format!("{} runs", files.len()) };
     let size = report.html().len() as f64 / 1e6;
     super::print(format_args!("{}: {runs}, {size:.2} MB\n", arguments.output.display()))
+}
+
+/// Writes the page of a study.
+fn report_study(arguments: &Arguments, folder: &Path) -> Result<(), Failure> {
+    let recorded = Recorded::open(folder).map_err(Failure::input)?;
+    let page = StudyPage::new(&recorded, folder).map_err(Failure::input)?;
+    page.write(&arguments.output, arguments.force).map_err(Failure::output)?;
+    let (runs, size) = (recorded.study.runs, page.html().len() as f64 / 1e6);
+    super::print(format_args!(
+        "{}: a study of {runs} runs, {size:.2} MB\n",
+        arguments.output.display()
+    ))
 }

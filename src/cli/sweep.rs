@@ -40,6 +40,12 @@ pub struct Arguments {
     /// Keep the state whenever the first drive passes this angle (degrees; with --vary).
     #[arg(long, value_name = "ANGLE", requires = "vary", allow_negative_numbers = true)]
     section: Option<f64>,
+    /// Keep the K largest Lyapunov exponents of each run (with --vary); takes longer.
+    #[arg(long, value_name = "K", requires = "vary")]
+    exponents: Option<usize>,
+    /// Keep after how many revolutions each motion repeats itself, to this tolerance (with --vary).
+    #[arg(long, value_name = "TOLERANCE", requires = "vary", num_args = 0..=1, default_missing_value = "1e-3")]
+    attractor: Option<f64>,
     /// Keep how far each run is true (with --vary); takes longer.
     #[arg(long, requires = "vary")]
     horizon: bool,
@@ -214,7 +220,8 @@ fn study_text(arguments: &Arguments) -> String {
         let _ = arguments.discard.map(|count| writeln!(text, "discard = {count}"));
     }
     let (runs, revolutions) = (&arguments.keep, &arguments.keep_revolutions);
-    if arguments.horizon || !runs.is_empty() || !revolutions.is_empty() {
+    let exponents = arguments.exponents;
+    if exponents.is_some() || arguments.horizon || !runs.is_empty() || !revolutions.is_empty() {
         let _ = writeln!(text, "\n[keep]");
         if !runs.is_empty() {
             let _ = writeln!(text, "runs = {}", list(runs));
@@ -225,9 +232,13 @@ fn study_text(arguments: &Arguments) -> String {
         if arguments.horizon {
             let _ = writeln!(text, "horizon = true");
         }
+        let _ = exponents.map(|count| writeln!(text, "exponents = {count}"));
     }
     if let Some(angle) = arguments.section {
         let _ = writeln!(text, "\n[section]\nangle = {:?}", angle.to_radians());
+    }
+    if let Some(tolerance) = arguments.attractor {
+        let _ = writeln!(text, "\n[attractor]\ntolerance = {tolerance:?}");
     }
     text
 }

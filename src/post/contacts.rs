@@ -70,35 +70,44 @@ pub struct RevolutionContacts {
 }
 
 impl Contacts {
-    /// The contacts of the clearance of this index and name in a run that ended at `end` (s).
+    /// The contacts of the clearance of this index and name in a part of a run, up to its end (s). Of a
+    /// contact that began before the part its time in the part counts, and its peak if that lies there;
+    /// its impact and what it dissipated do not. Numbers of revolutions are those of all the run's.
     pub fn of(
         (clearance, joint): (usize, &str),
         contacts: &[Contact],
-        end: f64,
+        [begin, end]: [f64; 2],
         parts: Option<Revolutions>,
     ) -> Self {
-        let its = || contacts.iter().filter(|contact| contact.clearance == clearance);
-        let stretches: Vec<Stretch> = its().map(|contact| stretch(contact, end)).collect();
+        let whole = || contacts.iter().filter(|contact| contact.clearance == clearance);
+        let all: Vec<Stretch> = whole().map(|contact| stretch(contact, end)).collect();
+        let within = all.iter().filter(|stretch| stretch.end > begin || stretch.begin >= begin);
+        let stretches: Vec<Stretch> =
+            within.map(|s| Stretch { begin: s.begin.max(begin), ..*s }).collect();
+        let its = || whole().filter(|contact| contact.begin >= begin);
         let duration: f64 = stretches.iter().map(Stretch::length).sum();
-        let permanent = parts.map_or(end / 2.0, |parts| parts.period() * (1.0 - 1e-9));
+        let length = end - begin;
+        let permanent = parts.map_or(length / 2.0, |parts| parts.period() * (1.0 - 1e-9));
         Contacts {
             joint: joint.to_owned(),
-            count: stretches.len(),
+            count: its().count(),
             duration,
-            share: (end > 0.0).then(|| duration / end),
+            share: (length > 0.0).then(|| duration / length),
             longest_contact: longest(stretches.iter().copied()),
-            longest_flight: longest(flights(&stretches, end).into_iter()),
+            longest_flight: longest(flights(&stretches, [begin, end]).into_iter()),
             deepest: largest(
-                its().map(|c| At { value: c.peak_penetration, time: c.peak_penetration_time }),
+                whole()
+                    .map(|c| At { value: c.peak_penetration, time: c.peak_penetration_time })
+                    .filter(|deepest| deepest.time >= begin),
             ),
             fastest: largest(its().map(impact)),
             dissipated: its().map(|contact| contact.dissipated).filter(|x| x.is_finite()).sum(),
             permanent: (stretches.iter().copied())
-                .filter(|stretch| end > 0.0 && stretch.length() >= permanent)
+                .filter(|stretch| length > 0.0 && stretch.length() >= permanent)
                 .collect(),
             revolutions: parts.map_or(Vec::new(), |parts| {
-                let its: Vec<&Contact> = its().collect();
-                (0..parts.count()).map(|k| revolution(k, parts, &its, &stretches)).collect()
+                let its: Vec<&Contact> = whole().collect();
+                (0..parts.count()).map(|k| revolution(k, parts, &its, &all)).collect()
             }),
         }
     }
@@ -114,8 +123,8 @@ fn impact(contact: &Contact) -> At {
 }
 
 /// What lies between the contacts of a joint, which stand in the order of time.
-fn flights(contacts: &[Stretch], end: f64) -> Vec<Stretch> {
-    let begins = std::iter::once(0.0).chain(contacts.iter().map(|contact| contact.end));
+fn flights(contacts: &[Stretch], [begin, end]: [f64; 2]) -> Vec<Stretch> {
+    let begins = std::iter::once(begin).chain(contacts.iter().map(|contact| contact.end));
     let ends = contacts.iter().map(|contact| (contact.begin, false)).chain([(end, true)]);
     begins
         .zip(ends)
@@ -182,7 +191,7 @@ mod tests {
             contact(0, 0.75, 1.0),
             contact(1, 0.5, f64::NAN),
         ];
-        Contacts::of((clearance, "A"), &contacts, 2.0, parts)
+        Contacts::of((clearance, "A"), &contacts, [0.0, 2.0], parts)
     }
 
     #[test]
@@ -200,6 +209,18 @@ mod tests {
     }
 
     #[test]
+    fn of_a_part_what_began_before_it_counts_by_its_time_there() {
+        let contacts = [contact(0, 0.25, 0.5), contact(0, 0.75, 1.25), contact(0, 1.5, 1.75)];
+        let part = Contacts::of((0, "A"), &contacts, [1.0, 2.0], None);
+        assert_eq!((part.count, part.duration, part.share), (1, 0.5, Some(0.5)));
+        let flight = part.longest_flight.unwrap();
+        assert_eq!((flight.begin, flight.end), (1.25, 1.5));
+        // the peak of the second lay at 0.85
+        assert_eq!(part.deepest.unwrap().time, 1.6);
+        assert_eq!((part.fastest.unwrap().time, part.dissipated), (1.5, 0.25));
+    }
+
+    #[test]
     fn a_contact_that_lasts_a_revolution_is_permanent_and_runs_to_the_end() {
         for drive in [true, false] {
             let contacts = of(1, drive);
@@ -211,7 +232,7 @@ mod tests {
 
     #[test]
     fn a_joint_that_never_touches_flies_all_the_time() {
-        let contacts = Contacts::of((0, "A"), &[], 2.0, None);
+        let contacts = Contacts::of((0, "A"), &[], [0.0, 2.0], None);
         assert_eq!((contacts.count, contacts.share), (0, Some(0.0)));
         assert_eq!(contacts.longest_flight.unwrap().length(), 2.0);
         assert_eq!((contacts.longest_contact, contacts.deepest), (None, None));
@@ -219,7 +240,7 @@ mod tests {
 
     #[test]
     fn a_run_without_length_has_no_shares() {
-        let contacts = Contacts::of((0, "A"), &[contact(0, 0.0, f64::NAN)], 0.0, None);
+        let contacts = Contacts::of((0, "A"), &[contact(0, 0.0, f64::NAN)], [0.0, 0.0], None);
         assert_eq!((contacts.share, contacts.longest_flight), (None, None));
         assert!(contacts.permanent.is_empty());
     }

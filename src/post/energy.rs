@@ -10,15 +10,15 @@ use crate::record::ResultFile;
 pub struct EnergyBalance {
     /// Time (s) of the last sample, of which these are.
     pub time: f64,
-    /// Kinetic, potential and elastic energy gained since the start.
+    /// Kinetic, potential and elastic energy gained since the first sample.
     pub stored: f64,
-    /// Dissipated by contact damping, friction and dampers.
+    /// Dissipated by contact damping, friction and dampers since then.
     pub dissipated: f64,
-    /// Work of the drives.
+    /// Work of the drives since then.
     pub drive_work: f64,
-    /// Work of the applied forces and torques.
+    /// Work of the applied forces and torques since then.
     pub load_work: f64,
-    /// What the balance is off by at the end.
+    /// What the balance since the start of the run is off by at the end.
     pub residual: f64,
     /// Largest amount that the balance was off by at a sample.
     pub largest_residual: At,
@@ -75,9 +75,9 @@ impl EnergyBalance {
         Some(EnergyBalance {
             time,
             stored,
-            dissipated: end.dissipated,
-            drive_work: end.drive_work,
-            load_work: end.load_work,
+            dissipated: end.dissipated - first.dissipated,
+            drive_work: end.drive_work - first.drive_work,
+            load_work: end.load_work - first.load_work,
             residual: end.residual,
             largest_residual: largest.unwrap_or(At { value: f64::NAN, time }),
             largest_kinetic: kinetic,

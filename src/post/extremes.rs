@@ -51,10 +51,11 @@ impl RunExtremes {
         Ok(recording.into_extremes())
     }
 
-    /// Of what a run found in its revolutions, to its relative tolerance.
+    /// Of what a run found in its revolutions, to its relative tolerance. Those that begin before a time
+    /// (s) do not count for the run, but each for itself.
     pub fn of_revolutions(
         names: &Names,
-        revolutions: &[Revolution],
+        (revolutions, from): (&[Revolution], f64),
         tolerance: f64,
         parts: Option<Revolutions>,
         wanted: Wanted<'_>,
@@ -63,7 +64,8 @@ impl RunExtremes {
         let quantities = wanted.of(names).into_iter().map(|quantity| {
             let mut tally = Tally::new(parts, quantity.is_signed());
             for (k, revolution) in revolutions.iter().enumerate() {
-                tally.take_found(k, revolution, quantity, accuracy);
+                let counts = revolution.begin >= from * (1.0 - ROUNDING);
+                tally.take_found((k, counts), revolution, quantity, accuracy);
             }
             (quantity, tally)
         });
@@ -129,7 +131,8 @@ impl RunExtremes {
         if !revolutions.is_empty() {
             let tolerance = file.number("relative_tolerance").unwrap_or(f64::INFINITY);
             let all = Wanted::All;
-            return Ok(Self::of_revolutions(&names, &revolutions, tolerance, parts, all));
+            let whole = (&revolutions[..], 0.0);
+            return Ok(Self::of_revolutions(&names, whole, tolerance, parts, all));
         }
         let friction = has_friction(file)?;
         let mut quantities = Vec::new();
@@ -162,6 +165,9 @@ impl Wanted<'_> {
         all
     }
 }
+
+/// What of a time counts as nothing, relative to it.
+const ROUNDING: f64 = 1e-9;
 
 /// Strides through a mechanism in search of extremes, a minute's work.
 const MOST_STRIDES: f64 = 1e7;
@@ -342,7 +348,7 @@ impl Recorder for Recording {
     fn revolution(&mut self, revolution: &Revolution) -> Result<(), Infallible> {
         if revolution.end <= self.end {
             for (tally, quantity) in self.tallies.iter_mut().zip(&self.quantities) {
-                tally.take_found(0, revolution, *quantity, self.accuracy);
+                tally.take_found((0, true), revolution, *quantity, self.accuracy);
             }
         }
         Ok(())

@@ -59,6 +59,9 @@ pub struct InMemory<'a> {
     pub case: &'a Case,
     /// Its mechanism.
     pub mechanism: &'a Mechanism<f64>,
+    /// Where the numbers of the whole run begin (s), a begin of one of its revolutions: what lies before
+    /// is a transient. Those of single revolutions are told all the same.
+    pub begin: f64,
     /// Where the run ended (s).
     pub end: f64,
     /// Contacts, in the order of their begins.
@@ -137,7 +140,7 @@ impl Summary {
             run,
             reference,
             contacts: joints
-                .map(|(k, joint)| Contacts::of((k, joint), &contacts, end, parts))
+                .map(|(k, joint)| Contacts::of((k, joint), &contacts, [0.0, end], parts))
                 .collect(),
             unresolved_contacts: contacts.iter().filter(|c| samples_in(c, &times) < 3).count(),
             turning,
@@ -156,7 +159,7 @@ impl Summary {
         reference: Option<RunExtremes>,
         wanted: Wanted<'_>,
     ) -> Result<Self, Error> {
-        let InMemory { case, mechanism, end, contacts, .. } = *run;
+        let InMemory { case, mechanism, begin, end, contacts, .. } = *run;
         let names = mechanism.model().names();
         let turning = turning(mechanism.model(), end, usize::MAX);
         let parts = turning.as_ref().map(|turning| turning.revolutions);
@@ -164,9 +167,11 @@ impl Summary {
             Some(assembled) => RunExtremes::of_assembled(assembled, end, parts, wanted)?,
             None => {
                 let tolerance = case.plan.solver.relative_tolerance;
-                RunExtremes::of_revolutions(names, run.revolutions, tolerance, parts, wanted)
+                let span = (run.revolutions, begin);
+                RunExtremes::of_revolutions(names, span, tolerance, parts, wanted)
             }
         };
+        let energies = || run.energies.iter().copied().filter(|(time, _)| *time >= begin);
         let nothing = || RunExtremes { names: names.clone(), quantities: Vec::new() };
         let joints = names.clearances.iter().enumerate();
         Ok(Summary {
@@ -174,7 +179,7 @@ impl Summary {
             case_name: case.name.clone(),
             title: case.title.clone(),
             status: "complete".to_owned(),
-            samples: run.energies.len(),
+            samples: energies().count(),
             end,
             reference: Ok(match names.clearances.is_empty() {
                 true => Reference::Itself,
@@ -182,11 +187,11 @@ impl Summary {
             }),
             run: extremes,
             contacts: joints
-                .map(|(k, joint)| Contacts::of((k, joint), contacts, end, parts))
+                .map(|(k, joint)| Contacts::of((k, joint), contacts, [begin, end], parts))
                 .collect(),
             unresolved_contacts: 0,
             turning,
-            energy: EnergyBalance::of_samples(run.energies.iter().copied()),
+            energy: EnergyBalance::of_samples(energies()),
             horizon: run.horizon.cloned(),
             sentence: None,
         })

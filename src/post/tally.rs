@@ -136,10 +136,10 @@ impl Tally {
 
 impl Tally {
     /// Takes what a run found of a quantity in revolution `k`, to an accuracy that is relative to
-    /// the largest magnitude in it.
+    /// the largest magnitude in it; says whether the revolution counts for the run.
     pub fn take_found(
         &mut self,
-        k: usize,
+        (k, counts): (usize, bool),
         revolution: &Revolution,
         quantity: Quantity,
         accuracy: f64,
@@ -151,7 +151,9 @@ impl Tally {
         let magnitude = both().map(|found| found.value.abs()).fold(0.0, f64::max);
         for found in both().filter(|found| found.value.is_finite() && found.time.is_finite()) {
             let found = Extreme::found(found, accuracy * magnitude);
-            self.total.take(found, self.signed);
+            if counts {
+                self.total.take(found, self.signed);
+            }
             if let Some(extremes) = self.revolutions.get_mut(k) {
                 extremes.take(found, self.signed);
             }

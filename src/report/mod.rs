@@ -11,10 +11,12 @@ mod pack;
 mod page;
 mod provenance;
 mod run;
+mod study;
 mod tables;
 mod thin;
 
 pub use error::Error;
+pub use study::StudyPage;
 
 use crate::post::Summary;
 use crate::record::{self, Draft, ResultFile};

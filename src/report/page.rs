@@ -78,7 +78,7 @@ pub(super) fn page(content: &Content<'_>) -> String {
 }
 
 /// A content security policy's name for an inline script or style.
-fn hash(text: &str) -> String {
+pub(super) fn hash(text: &str) -> String {
     format!("sha256-{}", STANDARD.encode(Sha256::digest(text.as_bytes())))
 }
 

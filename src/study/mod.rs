@@ -5,6 +5,8 @@
 //! (`pack.rs`). The tables are made of that in the order of the runs, so that nobody can see from them
 //! how many threads or processes there were, or how often they were killed.
 
+mod attractor;
+mod ensemble;
 mod pack;
 mod plan;
 mod reader;
@@ -15,10 +17,13 @@ mod section;
 mod sweep;
 mod tables;
 
+pub use attractor::AttractorPlan;
+pub use ensemble::EnsemblePlan;
+pub(crate) use ensemble::quantile;
 pub use plan::{Keep, Literal, SectionPlan, Study, Variable};
 pub use reader::{Recorded, Rows};
 pub use sweep::{Done, Options, Shard, Told, gather, sweep};
-pub use tables::TABLES;
+pub use tables::{ENSEMBLE, TABLES};
 
 use crate::{case, export, record};
 use parquet::errors::ParquetError;

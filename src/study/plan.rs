@@ -1,6 +1,8 @@
 //! What a study is: its file, read and checked.
 
 use super::Error;
+use super::attractor::AttractorPlan;
+use super::ensemble::{self, EnsemblePlan};
 use super::sampling::{self, Method, Spread};
 use crate::case::{self, Case, Changes, Override, Template, unit_of};
 use serde::Deserialize;
@@ -12,6 +14,12 @@ use std::path::{Path, PathBuf};
 const MOST_RUNS: f64 = 1e7;
 /// Variables that may be sampled.
 const MOST_SAMPLED: usize = 1000;
+/// Copies that an ensemble has at least.
+const FEWEST_COPIES: u64 = 10;
+/// Disturbance of a start that a case takes.
+const WIDEST: f64 = 0.1;
+/// Longest period of a motion that is looked for (revolutions).
+const LONGEST_PERIOD: u64 = 1000;
 /// Largest study file that is read (bytes), as of case files.
 const LARGEST: u64 = 1 << 20;
 
@@ -30,6 +38,8 @@ pub struct Study {
     pub variables: Vec<Variable>,
     /// What is kept.
     pub keep: Keep,
+    /// The ensemble that each run is made as, if that is asked.
+    pub ensemble: Option<EnsemblePlan>,
     /// Number of runs.
     pub runs: u64,
     set: Vec<Override>,
@@ -69,8 +79,12 @@ pub struct Keep {
     pub runs: Option<Vec<String>>,
     /// The same of each revolution.
     pub revolutions: Option<Vec<String>>,
-    /// Whole revolutions that are left out at the begin of each run.
+    /// Whole revolutions at the begin of each run that are left out of all that is kept.
     pub discard: u64,
+    /// How many Lyapunov exponents are sought; none if zero.
+    pub exponents: usize,
+    /// When a motion counts as one that repeats itself, if that is asked.
+    pub attractor: Option<AttractorPlan>,
     /// Whether each run says how far it is true.
     pub horizon: bool,
     /// Whether result files are kept.
@@ -107,6 +121,8 @@ struct Written {
     #[serde(default)]
     keep: WrittenKeep,
     section: Option<WrittenSection>,
+    attractor: Option<Spanned<WrittenAttractor>>,
+    ensemble: Option<Spanned<WrittenEnsemble>>,
 }
 
 #[derive(Debug, Deserialize)]
@@ -169,7 +185,32 @@ struct WrittenKeep {
     #[serde(default)]
     horizon: bool,
     #[serde(default)]
+    exponents: usize,
+    #[serde(default)]
     files: bool,
+}
+
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct WrittenEnsemble {
+    copies: u64,
+    spread: f64,
+    long: u64,
+    #[serde(default)]
+    seed: u64,
+}
+
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+struct WrittenAttractor {
+    tolerance: f64,
+    longest: u64,
+}
+
+impl Default for WrittenAttractor {
+    fn default() -> Self {
+        WrittenAttractor { tolerance: 1e-3, longest: 8 }
+    }
 }
 
 #[derive(Debug, Deserialize)]
@@ -287,11 +328,43 @@ impl Study {
             }
             (None, true) => {}
         }
+        let ensemble = written.ensemble.as_ref().map(|written_as| {
+            let WrittenEnsemble { copies, spread, long, seed } = *written_as.as_ref();
+            let wrong = |key: &str, message: String| reader.wrong(&written_as.span(), key, message);
+            let revolutions = written.span.revolutions.as_ref().map(|count| *count.as_ref());
+            let Some(revolutions) = revolutions else {
+                return Err(wrong("ensemble", "needs span.revolutions".to_owned()));
+            };
+            if written.samples.is_some() {
+                let message = "copies are the samples: an ensemble goes with a grid".to_owned();
+                return Err(wrong("ensemble", message));
+            }
+            if !(FEWEST_COPIES..=MOST_RUNS as u64).contains(&copies) {
+                let message = format!("must be from {FEWEST_COPIES} to {MOST_RUNS:e}, is {copies}");
+                return Err(wrong("ensemble.copies", message));
+            }
+            if !(spread > 0.0 && spread <= WIDEST) {
+                let message = format!("must be positive and {WIDEST} at most, is {spread}");
+                return Err(wrong("ensemble.spread", message));
+            }
+            if !(long as f64 > revolutions) {
+                let message = format!("must be more than span.revolutions, is {long}");
+                return Err(wrong("ensemble.long", message));
+            }
+            Ok(EnsemblePlan { copies, spread, seed, long })
+        });
+        let ensemble = ensemble.transpose()?;
+        if let Some(plan) = &ensemble {
+            variables.push(Variable::of_copies(plan));
+            samples = plan.copies + 1;
+        }
         for k in 1..variables.len() {
             let earlier = variables[..k].iter().find(|other| other.overlaps(&variables[k]));
             if let Some(earlier) = earlier {
                 let message = format!("varies what {:?} varies already", earlier.name);
-                return Err(reader.wrong(&written.vary[k].span(), &format!("vary[{k}]"), message));
+                // that of an ensemble stands in no line
+                let span = written.vary.get(k).map_or(0..0, |variable| variable.span());
+                return Err(reader.wrong(&span, &format!("vary[{k}]"), message));
             }
         }
         let axes = variables.iter().filter(|variable| !variable.sampled);
@@ -301,7 +374,21 @@ impl Study {
             let message = format!("comes to {runs:e} runs; at most {MOST_RUNS:e} are made");
             return Err(reader.wrong(&(0..0), "vary", message));
         }
-        let WrittenKeep { runs: of_runs, revolutions, horizon, files } = written.keep;
+        let WrittenKeep { runs: of_runs, revolutions, horizon, exponents, files } = written.keep;
+        let attractor = written.attractor.as_ref().map(|attractor| {
+            let WrittenAttractor { tolerance, longest } = *attractor.as_ref();
+            let wrong = |key: &str, message: String| reader.wrong(&attractor.span(), key, message);
+            if !(tolerance > 0.0 && tolerance.is_finite()) {
+                let message = format!("must be positive, is {tolerance}");
+                return Err(wrong("attractor.tolerance", message));
+            }
+            if !(1..=LONGEST_PERIOD).contains(&longest) {
+                let message = format!("must be from 1 to {LONGEST_PERIOD}, is {longest}");
+                return Err(wrong("attractor.longest", message));
+            }
+            Ok(AttractorPlan { tolerance, longest })
+        });
+        let attractor = attractor.transpose()?;
         let section = written.section.map(|section| {
             let WrittenSection { drive, angle, columns } = section;
             SectionPlan { drive, angle, columns }
@@ -313,7 +400,17 @@ impl Study {
             title: written.title,
             template,
             variables,
-            keep: Keep { runs: of_runs, revolutions, discard, horizon, files, section },
+            keep: Keep {
+                runs: of_runs,
+                revolutions,
+                discard,
+                exponents,
+                attractor,
+                horizon,
+                files,
+                section,
+            },
+            ensemble,
             runs: runs as u64,
             set,
             samples,
@@ -338,9 +435,18 @@ impl Study {
         values
     }
 
+    /// Runs that differ by a sample only, which stand side by side: of an ensemble the long run, then its
+    /// copies.
+    pub fn samples(&self) -> u64 {
+        self.samples
+    }
+
     /// What a run changes in the case.
     pub(super) fn changes(&self, run: u64) -> Result<Changes, case::NotAnOverride> {
         let mut set = self.set.clone();
+        if let Some(plan) = self.ensemble.filter(|_| run.is_multiple_of(self.samples)) {
+            set.push(format!("run.revolutions={}", plan.long).parse()?);
+        }
         for (variable, value) in self.variables.iter().zip(self.point(run)) {
             for key in &variable.keys {
                 set.push(format!("{key}={}", value.text).parse()?);
@@ -469,6 +575,28 @@ impl Variable {
             sampled: spread.is_some(),
         };
         Ok((variable, spread))
+    }
+
+    /// That by which the copies of an ensemble differ; that of the long run is zero.
+    fn of_copies(plan: &EnsemblePlan) -> Variable {
+        let spread = Spread::Normal { mean: 0.0, deviation: plan.spread };
+        let drawn = sampling::draw(Method::Random, plan.copies, 1, plan.seed);
+        let points =
+            drawn.into_iter().flatten().map(|point| spread.at(point).clamp(-WIDEST, WIDEST));
+        Variable {
+            name: ensemble::KEY.to_owned(),
+            unit: "1".to_owned(),
+            is_number: true,
+            is_log: false,
+            keys: vec![ensemble::KEY.to_owned()],
+            values: std::iter::once(0.0).chain(points).map(Literal::from).collect(),
+            sampled: true,
+        }
+    }
+
+    /// Whether copies of an ensemble differ by it.
+    pub fn is_of_copies(&self) -> bool {
+        self.name == ensemble::KEY
     }
 
     /// Whether it has the name or a key of another.

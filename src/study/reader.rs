@@ -1,6 +1,6 @@
 //! The tables of a study, read again.
 
-use super::{Error, Study};
+use super::{ENSEMBLE, Error, Study};
 use crate::model::Model;
 use parquet::column::reader::ColumnReader;
 use parquet::errors::ParquetError;
@@ -20,6 +20,10 @@ pub struct Recorded {
     pub revolutions: Rows,
     /// Rows of its section points.
     pub sections: Rows,
+    /// A row of each run that failed.
+    pub failures: Rows,
+    /// Rows of the revolutions of ensembles, where it has some.
+    pub ensemble: Option<Rows>,
 }
 
 /// A table of a study.
@@ -40,10 +44,15 @@ impl Recorded {
         let [study, case] = [runs.text("study_toml")?, runs.text("case_toml")?];
         let study = Study::recorded(&folder.join("study"), &study, &case)?;
         Ok(Recorded {
-            study,
             runs,
             revolutions: Rows::open(folder, "revolutions")?,
             sections: Rows::open(folder, "sections")?,
+            failures: Rows::open(folder, "failures")?,
+            ensemble: match study.ensemble {
+                Some(_) => Some(Rows::open(folder, ENSEMBLE)?),
+                None => None,
+            },
+            study,
         })
     }
 
@@ -114,6 +123,30 @@ impl Rows {
                 _ => return Err(missing()),
             };
             read.map_err(failed)?;
+        }
+        Ok(all)
+    }
+
+    /// A column of texts.
+    ///
+    /// # Errors
+    /// There is none of this name, or it cannot be read.
+    pub fn texts(&self, name: &str) -> Result<Vec<String>, Error> {
+        let failed = |source| damaged(&self.path, source);
+        let missing = || failed(ParquetError::General(format!("it has no texts {name:?}")));
+        let place = self.names.iter().position(|known| known == name).ok_or_else(missing)?;
+        let mut all = Vec::with_capacity(self.len());
+        for group in 0..self.reader.num_row_groups() {
+            let group = self.reader.get_row_group(group).map_err(failed)?;
+            let rows = group.metadata().num_rows().max(0) as usize;
+            let ColumnReader::ByteArrayColumnReader(mut column) =
+                group.get_column_reader(place).map_err(failed)?
+            else {
+                return Err(missing());
+            };
+            let mut texts = Vec::with_capacity(rows);
+            column.read_records(rows, None, None, &mut texts).map_err(failed)?;
+            all.extend(texts.iter().map(|text| String::from_utf8_lossy(text.data()).into_owned()));
         }
         Ok(all)
     }

@@ -1,11 +1,13 @@
 //! One run of a study, in memory: from its changes to its rows.
 
+use super::attractor::{self, Point};
 use super::pack::{Identity, Record, Rows};
 use super::scalar::{Scalar, skeleton};
 use super::section::Section;
-use super::{Error, Study};
+use super::{Error, Keep, Study};
 use crate::case::{Case, Changes};
 use crate::certify::{self, Reach, Witness};
+use crate::chaos::{self, Exponent, Lyapunov};
 use crate::digits::Sizes;
 use crate::halt;
 use crate::mechanism::{EnergyObservation, Mechanism, Observation};
@@ -14,11 +16,13 @@ use crate::post::{InMemory, RunExtremes, Summary, Wanted};
 use crate::record::{Ending, Outcome, Writer, sha256, utc};
 use crate::run::{Contact, Event, Peak, Progress, Recorder, Revolution, Schedule};
 use crate::simulate::{self, Simulation};
+use serde_json::{Map, Value, json};
 use sha2::{Digest, Sha256};
 use std::convert::Infallible;
 use std::error::Error as StdError;
 use std::fmt::Write;
 use std::fs;
+use std::num::NonZeroUsize;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
@@ -60,7 +64,7 @@ impl<'a> Runner<'a> {
         let case = first_case(study)?;
         let simulation = Simulation::new(&case).map_err(Error::Case)?;
         let mechanism = simulation.mechanism();
-        let skeleton = skeleton(&case, mechanism).map_err(|error| Error::Wrong {
+        let mut skeleton = skeleton(&case, mechanism).map_err(|error| Error::Wrong {
             path: study.path.clone(),
             line: None,
             key: "case".to_owned(),
@@ -73,11 +77,37 @@ impl<'a> Runner<'a> {
             message,
         };
         let keep = &study.keep;
+        check_span(study, mechanism, simulation.schedule())
+            .map_err(|(key, message)| wrong(key, message))?;
         let names = mechanism.model().names().clone();
+        let states = 2 * mechanism.freedoms();
+        let exponents = exponents_json(
+            &vec![NOTHING; keep.exponents],
+            (keep.exponents == states).then_some((NOTHING, NOTHING)),
+        );
+        let joints = names.clearances.iter().map(|joint| (joint.as_str(), false));
+        let attractor = attractor_json((0, 0.0), joints);
+        let mut asked = Vec::new();
+        for (word, numbers, wanted) in [
+            ("lyapunov", exponents, keep.exponents > 0),
+            ("attractor", attractor, keep.attractor.is_some()),
+        ] {
+            if wanted {
+                asked.extend(paths(word, &numbers));
+                skeleton[word] = numbers;
+            }
+        }
         let mut of_runs = Vec::new();
         for path in keep.runs.clone().unwrap_or_else(|| choice(&names, &OF_RUNS)) {
             let scalar = Scalar::of(&path, &skeleton);
             of_runs.push(scalar.map_err(|message| wrong("keep.runs", message))?);
+        }
+        for path in asked {
+            let scalar = Scalar::of(&path, &skeleton);
+            let scalar = scalar.map_err(|message| wrong("keep", message))?;
+            if !of_runs.contains(&scalar) {
+                of_runs.push(scalar);
+            }
         }
         let mut of_revolutions = Vec::new();
         let turns = mechanism.revolution().is_some();
@@ -85,6 +115,10 @@ impl<'a> Runner<'a> {
         for path in keep.revolutions.clone().unwrap_or_else(chosen) {
             let scalar = Scalar::of_each_revolution(&path, &skeleton);
             of_revolutions.push(scalar.map_err(|message| wrong("keep.revolutions", message))?);
+        }
+        if study.ensemble.is_some() && of_revolutions.is_empty() {
+            let message = "is of numbers of revolutions: name some in keep.revolutions";
+            return Err(wrong("ensemble", message.to_owned()));
         }
         if keep.horizon {
             for path in ["horizon.state", "horizon.forces", "horizon.doubles"] {
@@ -146,6 +180,7 @@ impl<'a> Runner<'a> {
         let columns = self.section.iter().flat_map(|section| &section.columns);
         let columns: Vec<&str> = columns.map(|column| column.name.as_str()).collect();
         let _ = write!(kind, "\n{plan:?} {columns:?} {} {}", keep.discard, keep.files);
+        let _ = write!(kind, " {} {:?}", keep.exponents, keep.attractor);
         sha256(&kind)
     }
 
@@ -201,6 +236,9 @@ impl<'a> Runner<'a> {
             return Err(Stopped::Failed(why.to_owned()));
         }
         let schedule = simulation.schedule().clone();
+        check_span(self.study, &mechanism, &schedule)
+            .map_err(|(key, message)| Stopped::Failed(format!("{key}: {message}")))?;
+        let sizes = Sizes::of(&mechanism);
         let times = self.times(&mechanism, &schedule);
         let simulation = simulation.sampled_at(times.iter().map(|(time, _)| *time).collect());
         let mut kept = Kept {
@@ -212,8 +250,11 @@ impl<'a> Runner<'a> {
             revolutions: Vec::new(),
             energies: Vec::new(),
             sections: Vec::new(),
-            witness: self.study.keep.horizon.then(|| Witness::new(Sizes::of(&mechanism))),
+            points: Vec::new(),
+            witness: self.study.keep.horizon.then(|| Witness::new(sizes.clone())),
+            sizes,
         };
+        let begin = kept.first_time;
         let (mut steps, mut turned) = (0, 0);
         let period = mechanism.revolution().unwrap_or(f64::INFINITY);
         let mut watch = |progress: &Progress| {
@@ -231,7 +272,7 @@ impl<'a> Runner<'a> {
         }
         let turns = (schedule.duration::<f64>() / period + ROUNDING) as u64;
         self.revolutions.fetch_add(turns.saturating_sub(turned), Ordering::Relaxed);
-        let Kept { contacts, revolutions, energies, sections, witness, .. } = kept;
+        let Kept { contacts, revolutions, energies, sections, points, witness, .. } = kept;
         let horizon = witness.map(|witness| {
             let reach = Reach { to_the_end: false, run_steps: steps };
             let mut watch = |_: &Progress| flow();
@@ -243,6 +284,7 @@ impl<'a> Runner<'a> {
         let run = InMemory {
             case: &case,
             mechanism: &mechanism,
+            begin,
             end: schedule.duration(),
             contacts: &contacts,
             revolutions: &revolutions,
@@ -253,7 +295,24 @@ impl<'a> Runner<'a> {
         let wanted = Wanted::Named(&self.quantities);
         let summary = Summary::of_run(&run, reference, wanted).map_err(failed)?;
         let parts = summary.turning.as_ref().map(|turning| turning.revolutions);
-        let summary = summary.to_json();
+        let touching = summary.contacts.iter();
+        let touching = touching.map(|joint| (joint.joint.as_str(), joint.share == Some(1.0)));
+        let attractor = self
+            .study
+            .keep
+            .attractor
+            .as_ref()
+            .map(|plan| attractor_json(attractor::period(&points, plan), touching));
+        let mut summary = summary.to_json();
+        if let Some(attractor) = attractor {
+            summary["attractor"] = attractor;
+        }
+        if let Some(found) = self.exponents(&case)? {
+            let more = found.sum.zip(
+                found.dimension.map(|d| Exponent { per_lap: d.value, half_width: d.half_width }),
+            );
+            summary["lyapunov"] = exponents_json(&found.exponents, more);
+        }
         let mut of_revolutions = Vec::new();
         let count = parts.map_or(0, |parts| parts.count());
         if !self.of_revolutions.is_empty() {
@@ -284,27 +343,53 @@ impl<'a> Runner<'a> {
             false => vec![0.0, end],
         };
         let section = self.section.as_ref().map(|section| section.times(mechanism, end));
-        let section = section.unwrap_or_default();
-        let mut times = Vec::with_capacity(grid.len() + section.len());
-        let (mut grid, mut section) = (grid.into_iter().peekable(), section.into_iter().peekable());
-        loop {
-            let next = match (grid.peek(), section.peek()) {
-                (Some(a), Some(b)) if a == b => {
-                    grid.next();
-                    section.next().map(|time| (time, Of { grid: true, section: true }))
-                }
-                (Some(a), Some(b)) if b < a => {
-                    section.next().map(|time| (time, Of { grid: false, section: true }))
-                }
-                (None, Some(_)) => {
-                    section.next().map(|time| (time, Of { grid: false, section: true }))
-                }
-                _ => grid.next().map(|time| (time, Of { grid: true, section: false })),
-            };
-            match next {
-                Some(next) => times.push(next),
-                None => return times,
+        let keep = &self.study.keep;
+        let period = mechanism.revolution();
+        let begin = period.filter(|_| keep.discard > 0).map(|period| keep.discard as f64 * period);
+        let turns = period.filter(|_| keep.attractor.is_some());
+        let turns = turns.into_iter().flat_map(|period| {
+            let last = (end / period + ROUNDING) as u64;
+            (keep.discard + 1..=last).map(move |k| (k as f64 * period).min(end))
+        });
+        let nothing = Of { grid: false, section: false, begin: false, turn: false };
+        let of = |times: Vec<f64>, of: Of| times.into_iter().map(move |time| (time, of));
+        let mut times: Vec<(f64, Of)> = of(grid, Of { grid: true, ..nothing })
+            .chain(of(section.unwrap_or_default(), Of { section: true, ..nothing }))
+            .chain(of(begin.into_iter().collect(), Of { begin: true, ..nothing }))
+            .chain(of(turns.collect(), Of { turn: true, ..nothing }))
+            .collect();
+        times.sort_by(|(a, _), (b, _)| a.total_cmp(b));
+        times.dedup_by(|(time, of), (kept, all)| {
+            let same = time == kept;
+            if same {
+                all.grid |= of.grid;
+                all.section |= of.section;
+                all.begin |= of.begin;
+                all.turn |= of.turn;
             }
+            same
+        });
+        times
+    }
+
+    /// Lyapunov exponents of a case, if they are kept. `None`, too, where they cannot be told apart.
+    fn exponents(&self, case: &Case) -> Result<Option<Lyapunov>, Stopped> {
+        let keep = &self.study.keep;
+        if keep.exponents == 0 {
+            return Ok(None);
+        }
+        let plan = chaos::Plan {
+            span: chaos::Span::Case,
+            discard: keep.discard,
+            exponents: Some(keep.exponents),
+            // runs go on at a time already
+            jobs: NonZeroUsize::MIN,
+        };
+        match chaos::lyapunov(case, &plan, &mut |_, _| ()) {
+            Ok(found) => Ok(Some(found)),
+            Err(chaos::Error::Collapsed { .. }) => Ok(None),
+            Err(_) if halt::is_asked() => Err(Stopped::Interrupted),
+            Err(error) => Err(failed(error)),
         }
     }
 
@@ -398,6 +483,88 @@ fn chain(error: &dyn StdError) -> String {
     line.lines().map(str::trim).collect::<Vec<_>>().join("; ")
 }
 
+/// Whether what is kept can be told of runs that last so long; else the key that is wrong, and why.
+fn check_span(
+    study: &Study,
+    mechanism: &Mechanism<f64>,
+    schedule: &Schedule,
+) -> Result<(), (&'static str, String)> {
+    let Keep { discard, exponents, attractor, .. } = &study.keep;
+    let states = 2 * mechanism.freedoms();
+    if *exponents > states {
+        let message = format!("there are {states}, twice the freedoms; {exponents} cannot be told");
+        return Err(("keep.exponents", message));
+    }
+    let Some(period) = mechanism.revolution() else {
+        let needs =
+            |key| Err((key, "no drive comes round that revolutions could be told by".to_owned()));
+        return match (*discard, *exponents, attractor) {
+            (0, 0, None) => Ok(()),
+            (0, 0, Some(_)) => needs("attractor"),
+            (0, _, _) => needs("keep.exponents"),
+            _ => needs("span.discard"),
+        };
+    };
+    let whole = (schedule.duration::<f64>() / period + ROUNDING) as u64;
+    if *discard > 0 && *discard as f64 * period >= schedule.duration::<f64>() * (1.0 - ROUNDING) {
+        return Err((
+            "span.discard",
+            format!("a run lasts {whole} revolutions; nothing would be left"),
+        ));
+    }
+    if *exponents > 0 && whole <= *discard {
+        return Err(("keep.exponents", "no whole revolution is left".to_owned()));
+    }
+    let needs = attractor.map_or(0, |plan| plan.needs());
+    if attractor.is_some() && whole < discard + needs {
+        let left = whole.saturating_sub(*discard);
+        let message = format!(
+            "it takes {needs} revolutions behind span.discard to tell a period; there are {left}"
+        );
+        return Err(("attractor.longest", message));
+    }
+    Ok(())
+}
+
+/// An exponent that stands for any.
+const NOTHING: Exponent = Exponent { per_lap: 0.0, half_width: Some(0.0) };
+
+/// Exponents as a study's summary has them, with the sum of all and the dimension where they are known.
+fn exponents_json(exponents: &[Exponent], all: Option<(Exponent, Exponent)>) -> Value {
+    let told =
+        |number: &Exponent| json!({ "value": number.per_lap, "half_width": number.half_width });
+    let numbered = (exponents.iter().zip(1..)).map(|(exponent, k)| (k.to_string(), told(exponent)));
+    let mut told_all = Map::from_iter(numbered);
+    if let Some((sum, dimension)) = all {
+        told_all.insert("sum".to_owned(), told(&sum));
+        told_all.insert("kaplan_yorke".to_owned(), told(&dimension));
+    }
+    Value::Object(told_all)
+}
+
+/// Where a motion ends, as a study's summary has it.
+fn attractor_json<'j>(
+    (period, apart): (u64, f64),
+    touching: impl Iterator<Item = (&'j str, bool)>,
+) -> Value {
+    let touching = touching.map(|(joint, always)| (joint.to_owned(), json!(always)));
+    json!({
+        "revolutions": period,
+        "apart": apart,
+        "always_in_contact": Map::from_iter(touching),
+    })
+}
+
+/// The paths of all numbers below a word.
+fn paths(word: &str, numbers: &Value) -> Vec<String> {
+    match numbers {
+        Value::Object(below) => {
+            below.iter().flat_map(|(key, value)| paths(&format!("{word}.{key}"), value)).collect()
+        }
+        _ => vec![word.to_owned()],
+    }
+}
+
 /// The first case of a study that can be run.
 fn first_case(study: &Study) -> Result<Case, Error> {
     let mut first = None;
@@ -440,6 +607,10 @@ fn choice(names: &Names, (of_joints, of_clearances): &Choice) -> Vec<String> {
 struct Of {
     grid: bool,
     section: bool,
+    /// What counts begins there.
+    begin: bool,
+    /// A revolution ends there.
+    turn: bool,
 }
 
 /// What is kept of a run while it goes on.
@@ -454,6 +625,9 @@ struct Kept<'a> {
     revolutions: Vec<Revolution>,
     energies: Vec<(f64, EnergyObservation)>,
     sections: Vec<f64>,
+    /// States at the ends of revolutions.
+    points: Vec<Point>,
+    sizes: Sizes,
     witness: Option<Witness>,
 }
 
@@ -466,11 +640,14 @@ impl Recorder for Kept<'_> {
     fn sample(&mut self, observation: &Observation) -> Result<(), Infallible> {
         let Some((_, of)) = self.times.next() else { return Ok(()) };
         let time = observation.time;
-        if of.grid {
+        if of.grid || of.begin {
             self.energies.push((time, observation.energy));
-            if let Some(witness) = &mut self.witness {
-                witness.take(observation);
-            }
+        }
+        if let Some(witness) = self.witness.as_mut().filter(|_| of.grid) {
+            witness.take(observation);
+        }
+        if of.turn {
+            self.points.push(Point::of(observation, &self.sizes));
         }
         let behind = time >= self.first_time * (1.0 - ROUNDING);
         if let Some(section) = self.runner.section.as_ref().filter(|_| of.section && behind) {

@@ -55,6 +55,7 @@ pub(super) fn skeleton(case: &Case, mechanism: &Mechanism<f64>) -> Result<Value,
     let run = InMemory {
         case,
         mechanism,
+        begin: 0.0,
         end,
         contacts: &contacts,
         revolutions: &[revolution],
@@ -63,7 +64,8 @@ pub(super) fn skeleton(case: &Case, mechanism: &Mechanism<f64>) -> Result<Value,
     };
     let names = model.names().clone();
     let revolutions = std::slice::from_ref(&run.revolutions[0]);
-    let reference = RunExtremes::of_revolutions(&names, revolutions, 1e-9, None, Wanted::All);
+    let reference =
+        RunExtremes::of_revolutions(&names, (revolutions, 0.0), 1e-9, None, Wanted::All);
     Ok(Summary::of_run(&run, Some(reference), Wanted::All)?.to_json())
 }
 

@@ -102,7 +102,9 @@ fn columns(model: &Model<f64>) -> Vec<SectionColumn> {
 fn crossings(course: &Course<f64>, angle: f64, end: f64) -> Vec<f64> {
     let turns = |time: f64| (course.at(time)[0] - angle) / TAU;
     // no more than an eighth of a turn, so that none is passed twice unseen but at a reversal
-    let step = (TAU / 8.0 / course.fastest().max(1e-300)).min(end / 64.0);
+    // or near one, of which a swing has two in a period
+    let period = course.period().unwrap_or(f64::INFINITY);
+    let step = (TAU / 8.0 / course.fastest().max(1e-300)).min(end / 64.0).min(period / 16.0);
     let steps = (end / step).ceil().min(1e8) as u64;
     let mut times = Vec::new();
     let mut before = (0.0, turns(0.0));

@@ -1,5 +1,6 @@
 //! The tables of a study: a row of each run, of its revolutions and section points, of each failure.
 
+use super::ensemble::{self, EnsemblePlan};
 use super::pack::{Identity, Packs, Record};
 use super::runner::{Runner, hexadecimal};
 use super::{Error, Study};
@@ -10,6 +11,8 @@ use std::path::{Path, PathBuf};
 
 /// Names of the tables.
 pub const TABLES: [&str; 4] = ["runs", "revolutions", "sections", "failures"];
+/// Name of the table that a study with ensembles has besides.
+pub const ENSEMBLE: &str = "ensemble";
 
 /// Writes the tables of a study from its packs; `identities` are those of its runs, in their order.
 /// Gives their paths, and how many runs failed.
@@ -48,11 +51,60 @@ pub(super) fn write(
             Record { outcome: Err(why), .. } => failed.add(&key, &[], Some(&why))?,
         }
     }
+    if let Some(plan) = &study.ensemble {
+        let mut table = Rows::create(ENSEMBLE, study, runner, folder, csv)?;
+        let samples = study.samples() as usize;
+        for (point, identities) in identities.chunks(samples).enumerate() {
+            if halt::is_asked() {
+                return Err(Error::Interrupted);
+            }
+            let run = point * samples;
+            let values = study.variables.iter().zip(study.point(run as u64));
+            let values = values.filter(|(variable, _)| !variable.is_of_copies());
+            let values = values.map(|(_, value)| value).collect();
+            let key = Key { run: run as i32, values, identity: &identities[0] };
+            for row in ensembles(plan, packs, identities, runner.of_revolutions.len())? {
+                table.add(&key, &row, None)?;
+            }
+        }
+        open.push(table);
+    }
     let mut paths = Vec::new();
     for table in open {
         paths.extend(table.finish()?);
     }
     Ok((paths, failures))
+}
+
+/// Rows of the ensemble at a point of the grid, one for each revolution of the copies: of which the numbers
+/// of each kind behind each other.
+fn ensembles(
+    plan: &EnsemblePlan,
+    packs: &Packs,
+    identities: &[Identity],
+    kinds: usize,
+) -> Result<Vec<Vec<f64>>, Error> {
+    let width = 3 + kinds;
+    let revolutions = |identity: &Identity| -> Result<Vec<f64>, Error> {
+        let outcome = packs.get(identity)?.and_then(|record| record.outcome.ok());
+        Ok(outcome.map_or(Vec::new(), |rows| rows.revolutions))
+    };
+    let long = revolutions(&identities[0])?;
+    let copies = identities[1..].iter().map(revolutions).collect::<Result<Vec<_>, _>>()?;
+    let most = copies.iter().map(|rows| rows.len() / width).max().unwrap_or(0);
+    let first = copies.iter().find_map(|rows| rows.first()).copied().unwrap_or(0.0);
+    let mut all: Vec<Vec<f64>> = (0..most).map(|k| vec![first + k as f64]).collect();
+    for kind in 0..kinds {
+        let of = |rows: &[f64], k: usize| {
+            rows.get(k * width + 3 + kind).copied().filter(|value| value.is_finite())
+        };
+        let long: Vec<f64> = (0..long.len() / width).filter_map(|k| of(&long, k)).collect();
+        let by_revolution: Vec<Vec<f64>> =
+            (0..most).map(|k| copies.iter().filter_map(|rows| of(rows, k)).collect()).collect();
+        let told = ensemble::rows(&by_revolution, &long, first as u64, plan.seed);
+        all.iter_mut().zip(told).for_each(|(row, told)| row.extend(told));
+    }
+    Ok(all)
 }
 
 /// What stands in front of every row.
@@ -86,7 +138,8 @@ impl Rows {
             Holds::Real | Holds::Repeated => Cells::Real(Vec::new()),
         });
         let columns: Vec<Cells> = columns.collect();
-        let before = 1 + study.variables.len();
+        let copies = study.variables.iter().filter(|variable| variable.is_of_copies()).count();
+        let before = 1 + study.variables.len() - if name == ENSEMBLE { copies } else { 0 };
         let width = match name {
             "runs" => runner.of_runs.len(),
             "failures" => 0,
@@ -167,7 +220,9 @@ fn fields(name: &str, study: &Study, runner: &Runner<'_>) -> Vec<Field> {
     };
     let run = "number of the run, from 0; the last variable goes fastest";
     let mut fields = vec![field("run", "1", run, Holds::Index)];
-    fields.extend(study.variables.iter().map(|variable| {
+    let variables = study.variables.iter();
+    let variables = variables.filter(|of| name != ENSEMBLE || !of.is_of_copies());
+    fields.extend(variables.map(|variable| {
         let holds = if variable.is_number { Holds::Repeated } else { Holds::Text };
         field(&variable.name, &variable.unit, "what varies", holds)
     }));
@@ -190,6 +245,15 @@ fn fields(name: &str, study: &Study, runner: &Runner<'_>) -> Vec<Field> {
             fields.push(field("begin", "s", "begin of the revolution", Holds::Real));
             fields.push(field("end", "s", "end of the revolution, or of the run", Holds::Real));
             fields.extend(scalars(&runner.of_revolutions));
+        }
+        ENSEMBLE => {
+            fields.push(field("revolution", "1", revolution, Holds::Index));
+            for scalar in &runner.of_revolutions {
+                fields.extend(ensemble::COLUMNS.iter().map(|(end, about)| {
+                    let unit = if ensemble::BARE.contains(end) { "1" } else { &scalar.unit };
+                    field(&format!("{}.{end}", scalar.name), unit, about, Holds::Real)
+                }));
+            }
         }
         "sections" => {
             fields.push(field("revolution", "1", revolution, Holds::Index));

@@ -4,13 +4,18 @@
 use super::{Drawn, Over, Series, figures as digits, quantile, sorted};
 use crate::figure::Figures;
 use crate::figure::palette::HEAT;
-use crate::figure::panel::{Mark, Panel, Sample, range_of};
+use crate::figure::panel::{Axis, Mark, Panel, Sample, range_of};
 use crate::figure::sheet::{Height, SINGLE_COLUMN, Sheet};
 use crate::figure::text::Text;
 use crate::study::Error;
 
 /// Colours of the legend.
 const TOLD: [usize; 5] = [0, 4, 8, 12, HEAT.len() - 1];
+
+/// The column of the periods of motions (revolutions).
+const PERIOD: &str = "attractor.revolutions";
+/// Periods that a legend tells at most.
+const MOST_PERIODS: usize = 8;
 
 /// Whether a study has a grid of two variables, and nothing else that varies.
 pub(super) fn is_for(study: &Drawn<'_>) -> bool {
@@ -47,14 +52,16 @@ fn panel(study: &Drawn<'_>, series: &Series) -> Option<Panel> {
         .map(|(run, values)| (*run, quantile(&sorted(values), 0.5)))
         .filter(|(_, value)| value.is_finite())
         .collect();
+    if series.name == PERIOD {
+        return Some(basins(study, values));
+    }
     let [low, high] = range_of(values.iter().map(|(_, value)| *value))?;
     let span = if high > low { high - low } else { 1.0 };
     let shade =
         |value: f64| (((value - low) / span * HEAT.len() as f64) as usize).min(HEAT.len() - 1);
     let mut cells = vec![Vec::new(); HEAT.len()];
     for (run, value) in &values {
-        let [x, y] = [across, up].map(|variable| edges(variable, study.value(variable, *run)));
-        cells[shade(*value)].push([[x[0], y[1]], [x[1], y[0]]]);
+        cells[shade(*value)].push(cell(study, *run));
     }
     let marks = cells.into_iter().zip(HEAT).filter(|(cells, _)| !cells.is_empty());
     let marks = marks.map(|(cells, colour)| Mark::Field(cells, colour)).collect();
@@ -64,13 +71,45 @@ fn panel(study: &Drawn<'_>, series: &Series) -> Option<Panel> {
         let value = low + (high - low) * k as f64 / (HEAT.len() - 1) as f64;
         (Sample::Bar(HEAT[k]), Text::roman(digits(value / numbers.unit.size, 3)))
     });
-    let [mut x, mut y] = [across.axis(), up.axis()];
-    for (axis, variable) in [(&mut x, across), (&mut y, up)] {
-        let [first, last] =
-            [0, variable.values.len() - 1].map(|k| edges(variable, variable.values[k]));
-        axis.range = [first[0], last[1]];
-    }
+    let [x, y] = [across, up].map(cells_axis);
     Some(Panel { label: numbers.full_title(), legend: legend.to_vec(), x, y, marks })
+}
+
+/// Where motions end: a colour for each period that there is, in their order.
+fn basins(study: &Drawn<'_>, periods: Vec<(u64, f64)>) -> Panel {
+    let mut known: Vec<f64> = periods.iter().map(|(_, period)| *period).collect();
+    known.sort_by(f64::total_cmp);
+    known.dedup();
+    let last = (known.len() - 1).max(1);
+    let mut marks = Vec::new();
+    let mut legend = Vec::new();
+    for (k, period) in known.iter().enumerate() {
+        let colour = HEAT[k * (HEAT.len() - 1) / last];
+        let its = periods.iter().filter(|(_, of)| of == period);
+        marks.push(Mark::Field(its.map(|(run, _)| cell(study, *run)).collect(), colour));
+        let told = if *period == 0.0 { "none".to_owned() } else { digits(*period, 4) };
+        legend.push((Sample::Bar(colour), Text::roman(told)));
+    }
+    // several periods that nobody could tell apart in a legend: the shortest and the longest
+    if legend.len() > MOST_PERIODS {
+        let longest = legend.split_off(legend.len() - 1);
+        legend.truncate(MOST_PERIODS - 1);
+        legend.extend(longest);
+    }
+    let [x, y] = [0, 1].map(|k| cells_axis(&study.variables[k]));
+    Panel { label: super::words::of_number(PERIOD), legend, x, y, marks }
+}
+
+/// The cell of a run.
+fn cell(study: &Drawn<'_>, run: u64) -> [[f64; 2]; 2] {
+    let [x, y] = [0, 1].map(|k| edges(&study.variables[k], study.value(&study.variables[k], run)));
+    [[x[0], y[1]], [x[1], y[0]]]
+}
+
+/// The axis of a variable whose cells fill the panel.
+fn cells_axis(variable: &Over) -> Axis {
+    let [first, last] = [0, variable.values.len() - 1].map(|k| edges(variable, variable.values[k]));
+    Axis { range: [first[0], last[1]], ..variable.axis() }
 }
 
 /// The ends of the cell of a value: half way to its neighbours.

@@ -1,6 +1,8 @@
 //! Figures of studies: of the tables in a folder.
 
 mod bifurcation;
+mod convergence;
+mod exponents;
 mod heat_map;
 mod histogram;
 mod poincare;
@@ -12,7 +14,7 @@ use super::quantity::Unit;
 use super::text::Text;
 use super::ticks::signed;
 use super::{Figure, Figures, Options};
-use crate::study::{Error, Recorded, Rows};
+use crate::study::{Error, Recorded, Rows, quantile};
 
 /// What every figure of a study says of itself.
 const DESCRIPTION: &str = concat!(
@@ -29,6 +31,8 @@ pub fn draw_study(recorded: &Recorded, options: &Options) -> Result<Vec<Figure>,
     let mut figures = Figures { options, description: DESCRIPTION, drawn: Vec::new() };
     let study = Drawn::of(recorded)?;
     response::draw(&study, &mut figures)?;
+    exponents::draw(&study, &mut figures)?;
+    convergence::draw(&study, &mut figures)?;
     heat_map::draw(&study, &mut figures)?;
     bifurcation::draw(&study, &mut figures)?;
     poincare::draw(&study, &mut figures)?;
@@ -66,7 +70,10 @@ struct Series {
 impl<'a> Drawn<'a> {
     fn of(recorded: &'a Recorded) -> Result<Self, Error> {
         let mut variables = Vec::new();
-        for variable in recorded.study.variables.iter().filter(|variable| variable.is_number) {
+        let numbers = recorded.study.variables.iter();
+        // copies of an ensemble are told by what they have in common
+        let numbers = numbers.filter(|variable| variable.is_number && !variable.is_of_copies());
+        for variable in numbers {
             let mut values = recorded.runs.column(&variable.name)?;
             values.retain(|value| value.is_finite());
             values.sort_by(f64::total_cmp);
@@ -186,17 +193,6 @@ impl Series {
     /// The axis of its numbers.
     fn axis(&self, values: impl IntoIterator<Item = f64>) -> Axis {
         axis(words::of_number(&self.name), &self.unit, values)
-    }
-}
-
-/// The value below which lies a share of some, in their order.
-fn quantile(sorted: &[f64], share: f64) -> f64 {
-    let place = share * (sorted.len().saturating_sub(1)) as f64;
-    let (below, part) = (place.floor() as usize, place.fract());
-    match (sorted.get(below), sorted.get(below + 1)) {
-        (Some(low), Some(high)) => low + part * (high - low),
-        (Some(low), None) => *low,
-        _ => f64::NAN,
     }
 }
 

@@ -1,7 +1,7 @@
 //! Response curves: a number of the runs over what varies. Of what each revolution has, the median
 //! and the band that nine tenths of the revolutions lie in.
 
-use super::{Drawn, Over, Series, quantile, sorted};
+use super::{Drawn, Over, Series, exponents, quantile, sorted};
 use crate::figure::Figures;
 use crate::figure::cloud::dot;
 use crate::figure::palette::{BAND, RUN};
@@ -24,7 +24,10 @@ pub(super) fn draw(study: &Drawn<'_>, figures: &mut Figures<'_>) -> Result<(), E
     if study.variables.is_empty() || super::heat_map::is_for(study) {
         return Ok(());
     }
-    for series in study.series()?.iter().filter(|series| !series.runs.is_empty()) {
+    let series = study.series()?;
+    // exponents have a figure of their own, intervals and all
+    let drawn = series.iter().filter(|series| !exponents::is_of_one(&series.name));
+    for series in drawn.filter(|series| !series.runs.is_empty()) {
         let panels = study.variables.iter().map(|variable| panel(study, series, variable));
         let mut panels: Vec<Panel> = panels.collect();
         crate::figure::over_time::letter(panels.iter_mut());

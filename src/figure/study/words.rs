@@ -13,6 +13,25 @@ pub(super) fn of_number(path: &str) -> Text {
             what => format!("{} in {joint}", capital(what)),
         });
     }
+    if let Some(number) = path.strip_prefix("lyapunov.") {
+        return match number {
+            "sum" => Text::roman("Sum of all exponents (e-folds per revolution)"),
+            "sum.half_width" => Text::roman("Half interval of the sum of all exponents"),
+            "kaplan_yorke" => Text::roman("Kaplan–Yorke dimension"),
+            "kaplan_yorke.half_width" => Text::roman("Half interval of the Kaplan–Yorke dimension"),
+            number => match number.strip_suffix(".half_width") {
+                Some(number) => Text::roman(format!("Half interval of exponent {number}")),
+                None => Text::roman(format!("Exponent {number} (e-folds per revolution)")),
+            },
+        };
+    }
+    if let Some(what) = path.strip_prefix("attractor.") {
+        return Text::roman(match what.strip_prefix("always_in_contact.") {
+            Some(joint) => format!("{joint} always in contact"),
+            None if what == "revolutions" => "Period (revolutions)".to_owned(),
+            None => "Distance after a period".to_owned(),
+        });
+    }
     let Some(rest) = path.strip_prefix("columns.") else {
         return Text::roman(capital(&path.replace('.', ", ")));
     };
@@ -87,6 +106,10 @@ mod tests {
             ("clearances.A.contacts", "Contacts in A"),
             ("clearances.A.largest_penetration.value", "Largest penetration in A"),
             ("energy.energy_residual", "Energy, energy residual"),
+            ("lyapunov.1.value", "Exponent 1 (e-folds per revolution)"),
+            ("lyapunov.kaplan_yorke.value", "Kaplan–Yorke dimension"),
+            ("attractor.revolutions", "Period (revolutions)"),
+            ("attractor.always_in_contact.A", "A always in contact"),
         ] {
             assert_eq!(of_number(path).plain(), words);
         }
