@@ -78,9 +78,9 @@ impl Lyapunov {
     fn zero_words(&self) -> String {
         let found: Vec<String> = self.zeros.found.iter().map(|k| (k + 1).to_string()).collect();
         let found = match found.len() {
-            0 => "none of these is, within its interval".to_owned(),
-            1 => format!("exponent {} is, within its interval", found[0]),
-            _ => format!("exponents {} are, within their intervals", found.join(", ")),
+            0 => "none of these may be, within its interval".to_owned(),
+            1 => format!("exponent {} may be, as far as so many laps tell", found[0]),
+            _ => format!("exponents {} may be, as far as so many laps tell", found.join(", ")),
         };
         let why = match self.zeros.known {
             Known { autonomous: false, .. } => {

@@ -55,10 +55,13 @@ impl Point {
         let lengths = self.lengths.iter().zip(&other.lengths).map(|(a, b)| (a - b).abs());
         let turned = |(a, b): (&f64, &f64)| ((a - b + PI).rem_euclid(TAU) - PI).abs();
         let angles = self.angles.iter().zip(&other.angles).map(turned);
-        // what is no number is far from everything
-        let larger = |most: f64, x: f64| if x > most || x.is_nan() { x } else { most };
         lengths.chain(angles).fold(0.0, larger)
     }
+}
+
+/// The larger of two distances; what is no number is far from everything.
+fn larger(most: f64, x: f64) -> f64 {
+    if x > most || x.is_nan() { x } else { most }
 }
 
 /// A period (revolutions), 0 for none, and the largest distance of the points that are that far apart;
@@ -72,7 +75,7 @@ pub(super) fn period(points: &[Point], plan: &AttractorPlan) -> (u64, f64) {
     for period in 1..=longest {
         let later = &points[points.len() - longest..];
         let earlier = &points[points.len() - longest - period..];
-        let apart = later.iter().zip(earlier).map(|(a, b)| a.distance(b)).fold(0.0, f64::max);
+        let apart = later.iter().zip(earlier).map(|(a, b)| a.distance(b)).fold(0.0, larger);
         if apart <= plan.tolerance {
             return (period as u64, apart);
         }
