@@ -20,6 +20,21 @@ pub(super) fn significant(value: f64, digits: i32) -> String {
     format!("{sign}{mantissa}\u{202f}×\u{202f}10<sup>{}</sup>", exponent_of_ten(exponent))
 }
 
+/// The same as plain text, for where there are no tags: in SVG.
+pub(super) fn significant_plain(value: f64, digits: i32) -> String {
+    let html = significant(value, digits);
+    let Some((lead, exponent)) = html.split_once("<sup>") else { return html };
+    let raised = |c: char| match c {
+        '−' => '⁻',
+        digit => digit.to_digit(10).map_or(digit, |digit| RAISED[digit as usize]),
+    };
+    let exponent: String = exponent.trim_end_matches("</sup>").chars().map(raised).collect();
+    format!("{lead}{exponent}")
+}
+
+/// Digits as exponents.
+const RAISED: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
+
 /// A number with all its digits, and powers of ten where it is very large or small; as HTML.
 pub(super) fn exactly(value: f64) -> String {
     let size = value.abs();
@@ -71,7 +86,14 @@ pub(super) fn milliseconds(time: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{exactly, milliseconds, significant};
+    use super::{exactly, milliseconds, significant, significant_plain};
+
+    #[test]
+    fn plain_text_has_no_tags() {
+        assert_eq!(significant_plain(2.54e-5, 4), "2.540\u{202f}×\u{202f}10⁻⁵");
+        assert_eq!(significant_plain(-1.5e12, 2), "−1.5\u{202f}×\u{202f}10¹²");
+        assert_eq!(significant_plain(12.5, 3), "12.5");
+    }
 
     #[test]
     fn numbers_read_as_in_print() {

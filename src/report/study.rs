@@ -2,7 +2,7 @@
 //! with the command that makes the run again. It needs no script.
 
 use super::html::{escape, fill};
-use super::number::significant;
+use super::number::{significant, significant_plain};
 use super::page::hash;
 use crate::figure::{self, Figure};
 use crate::record::{self, Draft};
@@ -183,7 +183,7 @@ fn charts(recorded: &Recorded, names: &[String], rows: &[Row]) -> String {
             SIZE[0] - ROOM[0] - 10.0,
             SIZE[1] - ROOM[1] - 10.0,
         );
-        let told = |x: f64| significant(x, 4);
+        let told = |x: f64| significant_plain(x, 4);
         let back = |x: f64| if variable.is_log { 10_f64.powf(x) } else { x };
         let bottom = SIZE[1] - ROOM[1];
         for (x, anchor, value) in
@@ -211,7 +211,7 @@ fn charts(recorded: &Recorded, names: &[String], rows: &[Row]) -> String {
                  {2}</title></circle></a>",
                 row.number,
                 escape(&row.values.join(", ")),
-                significant(row.numbers[k], DIGITS),
+                significant_plain(row.numbers[k], DIGITS),
             );
         }
         charts.push_str("</svg></figure>\n");
