@@ -7,7 +7,8 @@ use std::f64::consts::{PI, TAU};
 /// When a motion counts as one that repeats itself.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AttractorPlan {
-    /// Distance of two states that counts as none, in [`Point`]'s measure.
+    /// Distance of two states that counts as none: offsets of journals over their clearances,
+    /// positions over the mechanism's length, angles over a radian, rates over the fastest drive's.
     pub tolerance: f64,
     /// Longest period that is looked for (revolutions).
     pub longest: u64,
