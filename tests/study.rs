@@ -665,7 +665,7 @@ fn the_page_of_a_study_leads_from_each_point_to_its_command() {
     let command = command
         .replace("&#39;", "'")
         .replace("&quot;", "\"")
-        .replace("freeplay", env!("CARGO_BIN_EXE_freeplay"));
+        .replacen("freeplay", env!("CARGO_BIN_EXE_freeplay"), 1);
     let line = format!("{command} -o run.h5 --quiet");
     let said = Command::new("sh").args(["-c", &line]).current_dir(desk.0.path()).output().unwrap();
     assert_code(&said, 0);
