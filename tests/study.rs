@@ -662,10 +662,11 @@ fn the_page_of_a_study_leads_from_each_point_to_its_command() {
     // the command of a row makes the run
     let (_, behind) = page.split_once("id=\"run-7\"").unwrap();
     let (command, _) = behind.split_once("<code>").unwrap().1.split_once("</code>").unwrap();
-    let command = command
-        .replace("&#39;", "'")
-        .replace("&quot;", "\"")
-        .replacen("freeplay", env!("CARGO_BIN_EXE_freeplay"), 1);
+    let command = command.replace("&#39;", "'").replace("&quot;", "\"").replacen(
+        "freeplay",
+        env!("CARGO_BIN_EXE_freeplay"),
+        1,
+    );
     let line = format!("{command} -o run.h5 --quiet");
     let said = Command::new("sh").args(["-c", &line]).current_dir(desk.0.path()).output().unwrap();
     assert_code(&said, 0);
