@@ -512,11 +512,21 @@ fn periods_and_exponents_of_a_study_are_those_of_single_runs() {
         let period = (1..=4).find(|period| comes_back(*period) < 1e-4);
         assert_eq!(of("attractor.revolutions"), period.unwrap_or(0) as f64, "run {run}: {row:?}");
         assert_eq!(of("attractor.always_in_contact.walls"), 0.0);
-        // the sum is that of the impacts
-        let impacts = of("clearances.walls.contacts") / 30.0;
-        let expected = 2.0 * impacts * 0.725_241_114_010_197_f64.ln();
+        // each impact shrinks an area by the square of the restitution, so that the sum tells how many
+        // there were
         let sum = of("lyapunov.sum.value");
-        assert!((sum - expected).abs() < 0.02 * expected.abs(), "{sum} {expected}");
+        let impacts = 30.0 * sum / (2.0 * 0.725_241_114_010_197_f64.ln());
+        let contacts = of("clearances.walls.contacts");
+        if period.is_some() {
+            assert!(
+                (impacts - contacts).abs() < 2e-3 * contacts,
+                "run {run}: {impacts} {contacts}"
+            );
+        } else {
+            // exponents are those of a trajectory of their own: where a motion is chaotic it is another one,
+            // as often in contact in the long run only
+            assert!((impacts - contacts).abs() < 0.2 * contacts, "run {run}: {impacts} {contacts}");
+        }
         let [first, second] = [1, 2].map(|k| of(&format!("lyapunov.{k}.value")));
         assert!(first >= second && (first + second - sum).abs() < 1e-9 * sum.abs());
         // a motion that comes back is stable, one that is chaotic does not come back
