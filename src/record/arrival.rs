@@ -2,15 +2,19 @@
 //!
 //! The HDF5 library writes most things when it pleases, and drops errors that it meets then: after
 //! one failed write every later call may succeed, and the file hold zeros where numbers were. So
-//! whoever writes keeps note of all attributes and scales, and of each dataset a checksum (CRC-32 of
-//! its values as doubles) and their number. A file is published only if all of it comes back.
+//! whoever writes keeps note of all attributes and scales, and of each dataset a checksum: CRC-32 of
+//! its values as doubles, with their number; where it is compressed, of each chunk as it stands in the
+//! file, with what says how to read it. A file is published only if all of it comes back.
 
-use super::Attribute;
 use super::dimension_scale::{attach_scale, is_attached, scales_of};
+use super::{Attribute, chunk};
 use flate2::Crc;
+use hdf5::filters::Filter;
+use hdf5::types::TypeDescriptor;
 use hdf5::{Dataset, File, H5Type, Location};
 use ndarray::{Array2, s};
-use std::collections::BTreeMap;
+use std::cell::RefCell;
+use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
 
 /// Values that are read back at a time.
@@ -20,19 +24,69 @@ const BLOCK: usize = 1 << 16;
 #[derive(Debug, Default)]
 pub(crate) struct Written {
     sums: BTreeMap<String, Sum>,
+    packed: BTreeMap<String, Packed>,
     attributes: BTreeMap<(String, String), Noted>,
     /// Datasets, their scales, and the dimension that each is the scale of.
     scales: Vec<(String, String, u32)>,
 }
 
+/// Rows as they were handed to the library.
+#[derive(Debug)]
+pub(super) enum Rows {
+    /// By their values.
+    Plain(Sum),
+    /// By chunks: checksum and number of bytes of each.
+    Packed(Vec<(u32, usize)>),
+}
+
+/// A compressed dataset.
+#[derive(Debug)]
+struct Packed {
+    form: Form,
+    /// Checksum and number of bytes of each chunk, in their order along the rows.
+    chunks: Vec<(u32, usize)>,
+}
+
+/// How the bytes of chunks are to be read.
+#[derive(Debug, PartialEq)]
+struct Form {
+    shape: Vec<usize>,
+    chunk: Option<Vec<usize>>,
+    number: TypeDescriptor,
+    filters: Vec<Filter>,
+}
+
+impl Form {
+    fn of(dataset: &Dataset) -> hdf5::Result<Form> {
+        Ok(Form {
+            shape: dataset.shape(),
+            chunk: dataset.chunk(),
+            number: dataset.dtype()?.to_descriptor()?,
+            filters: dataset.filters(),
+        })
+    }
+}
+
 /// Checksum and number of values.
 #[derive(Debug, Default)]
-struct Sum {
+pub(super) struct Sum {
     crc: Crc,
     values: u64,
 }
 
 impl Sum {
+    /// Of these values.
+    pub fn of<T: Into<f64> + Copy>(values: &[T]) -> Sum {
+        let mut sum = Sum::default();
+        sum.take(values.iter().map(|value| (*value).into()));
+        sum
+    }
+
+    fn append(&mut self, behind: &Sum) {
+        self.crc.combine(&behind.crc);
+        self.values += behind.values;
+    }
+
     fn take(&mut self, values: impl Iterator<Item = f64>) {
         let mut bytes = Vec::with_capacity(size_of::<f64>() * values.size_hint().0);
         values.for_each(|value| bytes.extend_from_slice(&value.to_le_bytes()));
@@ -56,7 +110,28 @@ impl Written {
     /// Takes note of values that are written behind those before, of a dataset by its path.
     pub fn values<T: Into<f64> + Copy>(&mut self, dataset: &str, values: &[T]) {
         let path = format!("/{}", dataset.trim_start_matches('/'));
-        self.sums.entry(path).or_default().take(values.iter().map(|value| (*value).into()));
+        self.sums.entry(path).or_default().append(&Sum::of(values));
+    }
+
+    /// Takes note of a compressed dataset, before its first chunk.
+    pub fn compressed(&mut self, dataset: &Dataset) -> hdf5::Result<()> {
+        let packed = Packed { form: Form::of(dataset)?, chunks: Vec::new() };
+        self.packed.insert(dataset.name(), packed);
+        Ok(())
+    }
+
+    /// Takes note of rows that are written behind those before, of a dataset that has come to so many.
+    pub(super) fn rows(&mut self, dataset: &str, written: Rows, rows: usize) {
+        let path = format!("/{dataset}");
+        match written {
+            Rows::Plain(sum) => self.sums.entry(path).or_default().append(&sum),
+            Rows::Packed(chunks) => {
+                if let Some(packed) = self.packed.get_mut(&path) {
+                    packed.form.shape[0] = rows;
+                    packed.chunks.extend(chunks);
+                }
+            }
+        }
     }
 
     /// Writes an attribute.
@@ -101,11 +176,15 @@ impl Written {
     pub fn missing(&self, at: &Path) -> Option<String> {
         let file = File::with_options().with_fapl(|access| access.file_locking(false)).open(at);
         let Ok(file) = file else { return Some("its structure".to_owned()) };
-        let values = self.sums.iter().find(|(name, sum)| !has_values(&file, name, sum));
-        let values = values.map(|(name, _)| name[1..].to_owned());
+        let opened = Opened { file, datasets: RefCell::default() };
+        let values = self.sums.iter().find(|(name, sum)| !has_values(&opened, name, sum));
+        let chunks =
+            || self.packed.iter().find(|(name, packed)| !has_chunks(&opened, name, packed));
+        let values = values.map(|(name, _)| name).or_else(|| chunks().map(|(name, _)| name));
+        let values = values.map(|name| name[1..].to_owned());
         let attribute = || {
             let mut all = self.attributes.iter();
-            let changed = all.find(|((owner, name), noted)| !has(&file, owner, name, noted));
+            let changed = all.find(|((owner, name), noted)| !has(&opened, owner, name, noted));
             changed.map(|((owner, name), _)| format!("attribute {name} of {owner}"))
         };
         let scale = || {
@@ -114,10 +193,10 @@ impl Written {
                 // looking for a dataset among all of a scale takes long; one tells that they are there
                 let is_last = self.scales[k + 1..].iter().all(|(_, other, _)| other != scale);
                 let attached = || {
-                    let dataset = file.dataset(dataset)?;
+                    let dataset = opened.dataset(dataset)?;
                     let scales = scales_of(&dataset, *dimension)?;
                     let known =
-                        !is_last || is_attached(&dataset, &file.dataset(scale)?, *dimension)?;
+                        !is_last || is_attached(&dataset, &opened.dataset(scale)?, *dimension)?;
                     Ok::<_, hdf5::Error>(scales == 1 && known)
                 };
                 !attached().unwrap_or(false)
@@ -128,10 +207,28 @@ impl Written {
     }
 }
 
+/// A file whose datasets are opened once.
+struct Opened {
+    file: File,
+    datasets: RefCell<HashMap<String, Dataset>>,
+}
+
+impl Opened {
+    fn dataset(&self, name: &str) -> hdf5::Result<Dataset> {
+        let mut datasets = self.datasets.borrow_mut();
+        if let Some(known) = datasets.get(name) {
+            return Ok(known.clone());
+        }
+        let dataset = self.file.dataset(name)?;
+        datasets.insert(name.to_owned(), dataset.clone());
+        Ok(dataset)
+    }
+}
+
 /// Whether a dataset holds the values that were written.
-fn has_values(file: &File, name: &str, written: &Sum) -> bool {
+fn has_values(opened: &Opened, name: &str, written: &Sum) -> bool {
     let read = || -> hdf5::Result<Sum> {
-        let dataset = file.dataset(name)?;
+        let dataset = opened.dataset(name)?;
         let shape = dataset.shape();
         let (rows, width) = match shape.as_slice() {
             [rows] => (*rows, None),
@@ -154,8 +251,33 @@ fn has_values(file: &File, name: &str, written: &Sum) -> bool {
     read().is_ok_and(|read| read.told() == written.told())
 }
 
+/// Whether a dataset holds the chunks that were written.
+fn has_chunks(opened: &Opened, name: &str, written: &Packed) -> bool {
+    let read = || -> hdf5::Result<bool> {
+        let dataset = opened.dataset(name)?;
+        if Form::of(&dataset)? != written.form {
+            return Ok(false);
+        }
+        let rows = written.form.chunk.as_ref().map_or(1, |chunk| chunk[0]);
+        for (row, (crc, bytes)) in (0..).step_by(rows).zip(&written.chunks) {
+            if crc_of(&chunk::read(&dataset, row, *bytes)?) != *crc {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    };
+    read().unwrap_or(false)
+}
+
+/// Checksum of a chunk as it stands in a file.
+pub(super) fn crc_of(bytes: &[u8]) -> u32 {
+    let mut crc = Crc::new();
+    crc.update(bytes);
+    crc.sum()
+}
+
 /// Whether an attribute has the value that was written.
-fn has(file: &File, owner: &str, name: &str, noted: &Noted) -> bool {
+fn has(opened: &Opened, owner: &str, name: &str, noted: &Noted) -> bool {
     let read = |owner: &Location| match noted {
         Noted::One(value) => Ok(match (Attribute::read(owner, name)?, value) {
             (Some(Attribute::Number(read)), Attribute::Number(value)) => {
@@ -165,7 +287,10 @@ fn has(file: &File, owner: &str, name: &str, noted: &Noted) -> bool {
         }),
         Noted::Many(values) => Ok(owner.attr(name)?.read_raw::<f64>()? == *values),
     };
-    let found = if owner == "/" { read(file) } else { file.dataset(owner).and_then(|d| read(&d)) };
+    let found = match owner {
+        "/" => read(&opened.file),
+        dataset => opened.dataset(dataset).and_then(|dataset| read(&dataset)),
+    };
     found.unwrap_or(false)
 }
 

@@ -6,6 +6,7 @@
 
 mod arrival;
 mod attribute;
+mod chunk;
 mod dimension_scale;
 mod error;
 mod header;

@@ -1,6 +1,7 @@
 //! The HDF5 file as it is being written: made with all its datasets, then grown by blocks of rows.
 
-use super::arrival::Written;
+use super::arrival::{Rows, Sum, Written, crc_of};
+use super::chunk::{self, Number};
 use super::dimension_scale::set_scale;
 use super::header::{Ending, Header, Outcome, Series};
 use super::schema::{DATASETS, Dataset, Dimension, SCHEMA_VERSION, Values};
@@ -132,11 +133,13 @@ impl Store {
                 Some(names) => named_scale(&self.file, &mut self.written, dimension, names)?,
                 None if dimension == Dimension::Time => {
                     let chunks = self.chunks(dimension);
-                    create_growing::<f64>(&self.file, dimension.name(), chunks, None)?
+                    let written = &mut self.written;
+                    create_growing::<f64>(&self.file, written, dimension.name(), chunks, None)?
                 }
                 None => {
                     let chunks = self.chunks(dimension);
-                    create_growing::<i32>(&self.file, dimension.name(), chunks, None)?
+                    let written = &mut self.written;
+                    create_growing::<i32>(&self.file, written, dimension.name(), chunks, None)?
                 }
             };
             set_scale(&handle, dimension.name())?;
@@ -187,26 +190,27 @@ impl Store {
     pub fn append(&mut self, block: &Block) -> Result<(), Error> {
         let begin = self.rows[block.dimension as usize];
         let rows = begin..begin + block.rows;
-        let indices: Vec<i32> = rows.clone().map(|row| row as i32).collect();
+        let chunks = self.chunks(block.dimension);
+        let mut all = Vec::new();
         let scale = (block.dimension != Dimension::Time).then(|| block.dimension.name());
         if let Some(name) = scale {
+            let indices: Vec<i32> = rows.clone().map(|row| row as i32).collect();
             let (_, scale) = &self.scales[block.dimension as usize];
-            append_rows(scale, rows.clone(), None, &indices)
-                .map_err(failed(format!("write {name} to"), &self.path))?;
+            let written = append_rows(scale, (chunks, None), rows.clone(), &indices);
+            all.push((name, written.map_err(failed(format!("write {name} to"), &self.path))?));
         }
         let open = self.handles.iter().filter(|open| open.dataset.rows() == block.dimension);
-        let columns = || open.clone().zip(&block.columns);
-        for (open, values) in columns() {
+        for (open, values) in open.zip(&block.columns) {
+            let Dataset { name, values: stored, .. } = *open.dataset;
             let width = open.dataset.items().map(|_| open.width);
-            write_values(&open.handle, open.dataset.values, width, rows.clone(), values)
-                .map_err(failed(format!("write {} to", open.dataset.name), &self.path))?;
+            let written = write_values(&open.handle, stored, (chunks, width), rows.clone(), values)
+                .map_err(failed(format!("write {name} to"), &self.path))?;
+            all.push((name, written));
         }
         self.rows[block.dimension as usize] = rows.end;
-        if let Some(name) = scale {
-            self.written.values(name, &indices);
-        }
-        for (open, values) in columns() {
-            note(&mut self.written, open.dataset.name, open.dataset.values, values);
+        // only what all datasets have counts
+        for (name, written) in all {
+            self.written.rows(name, written, rows.end);
         }
         Ok(())
     }
@@ -253,8 +257,8 @@ impl Store {
             (chunks, None),
         )?;
         self.written.scale(&handle, &self.scales[series.along as usize].1, 0)?;
-        write_values(&handle, stored, None, 0..rows, &series.values)?;
-        note(&mut self.written, name, stored, &series.values);
+        let written = write_values(&handle, stored, (chunks, None), 0..rows, &series.values)?;
+        self.written.rows(name, written, rows);
         Ok(())
     }
 
@@ -347,6 +351,7 @@ fn named_scale(
 /// one dimension.
 fn create_growing<T: H5Type>(
     file: &File,
+    written: &mut Written,
     name: &str,
     chunks: Chunks,
     width: Option<usize>,
@@ -357,12 +362,16 @@ fn create_growing<T: H5Type>(
         [chunks.rows].into_iter().chain(width.map(|width| width.max(1))).collect();
     let dataset = file.new_dataset::<T>();
     let dataset = if chunks.compressed { dataset.shuffle().deflate(DEFLATE) } else { dataset };
-    dataset
+    let dataset = dataset
         .chunk(chunk)
         .obj_track_times(false)
         .attr_creation_order(AttrCreationOrder::Indexed)
         .shape(SimpleExtents::from_vec(extents))
-        .create(name)
+        .create(name)?;
+    if chunks.compressed {
+        written.compressed(&dataset)?;
+    }
+    Ok(dataset)
 }
 
 fn create_dataset(
@@ -375,9 +384,9 @@ fn create_dataset(
     (chunks, width): (Chunks, Option<usize>),
 ) -> hdf5::Result<hdf5::Dataset> {
     let handle = match stored {
-        Values::Real => create_growing::<f64>(file, name, chunks, width),
-        Values::Index => create_growing::<i32>(file, name, chunks, width),
-        Values::Flag(_) => create_growing::<i8>(file, name, chunks, width),
+        Values::Real => create_growing::<f64>(file, written, name, chunks, width),
+        Values::Index => create_growing::<i32>(file, written, name, chunks, width),
+        Values::Flag(_) => create_growing::<i8>(file, written, name, chunks, width),
     }?;
     written.attribute(&handle, "units", unit)?;
     written.attribute(&handle, "long_name", long_name)?;
@@ -393,49 +402,57 @@ fn create_dataset(
 fn write_values(
     handle: &hdf5::Dataset,
     stored: Values,
-    width: Option<usize>,
+    form: (Chunks, Option<usize>),
     rows: Range<usize>,
     values: &[f64],
-) -> hdf5::Result<()> {
+) -> hdf5::Result<Rows> {
     match stored {
-        Values::Real => append_rows(handle, rows, width, values),
-        Values::Index => append_rows(handle, rows, width, &indices_of(values)),
-        Values::Flag(_) => append_rows(handle, rows, width, &flags_of(values)),
+        Values::Real => append_rows(handle, form, rows, values),
+        Values::Index => {
+            let indices: Vec<i32> = values.iter().map(|&value| value as i32).collect();
+            append_rows(handle, form, rows, &indices)
+        }
+        Values::Flag(_) => {
+            let flags: Vec<i8> = values.iter().map(|&value| value as i8).collect();
+            append_rows(handle, form, rows, &flags)
+        }
     }
 }
 
-/// Takes note of values as they are stored.
-fn note(written: &mut Written, name: &str, stored: Values, values: &[f64]) {
-    match stored {
-        Values::Real => written.values(name, values),
-        Values::Index => written.values(name, &indices_of(values)),
-        Values::Flag(_) => written.values(name, &flags_of(values)),
-    }
-}
-
-fn indices_of(values: &[f64]) -> Vec<i32> {
-    values.iter().map(|&value| value as i32).collect()
-}
-
-fn flags_of(values: &[f64]) -> Vec<i8> {
-    values.iter().map(|&value| value as i8).collect()
-}
-
-/// Grows a dataset to the end of `rows` and writes these rows.
-fn append_rows<T: H5Type>(
+/// Grows a dataset to the end of `rows` and writes these rows, which begin a chunk where chunks are
+/// compressed.
+fn append_rows<T: Number>(
     handle: &hdf5::Dataset,
+    (chunks, width): (Chunks, Option<usize>),
     rows: Range<usize>,
-    width: Option<usize>,
     values: &[T],
-) -> hdf5::Result<()> {
-    let Some(width) = width else {
-        handle.resize(rows.end)?;
-        return handle.write_slice(values, rows);
-    };
-    handle.resize((rows.end, width))?;
-    let view = ArrayView2::from_shape((rows.len(), width), values)
-        .map_err(|error| hdf5::Error::from(error.to_string()))?;
-    handle.write_slice(view, ndarray::s![rows, ..])
+) -> hdf5::Result<Rows> {
+    match width {
+        None => handle.resize(rows.end)?,
+        Some(width) => handle.resize((rows.end, width))?,
+    }
+    let full = chunks.rows * width.unwrap_or(1);
+    if chunks.compressed {
+        if !rows.start.is_multiple_of(chunks.rows) {
+            return Err("rows that begin within a chunk".into());
+        }
+        let begins = rows.step_by(chunks.rows);
+        let packed = begins.zip(values.chunks(full.max(1))).map(|(row, values)| {
+            let packed = chunk::pack(values, full, DEFLATE)?;
+            chunk::write(handle, row, &packed)?;
+            Ok((crc_of(&packed), packed.len()))
+        });
+        return packed.collect::<hdf5::Result<_>>().map(Rows::Packed);
+    }
+    match width {
+        None => handle.write_slice(values, rows)?,
+        Some(width) => {
+            let view = ArrayView2::from_shape((rows.len(), width), values)
+                .map_err(|error| hdf5::Error::from(error.to_string()))?;
+            handle.write_slice(view, ndarray::s![rows, ..])?;
+        }
+    }
+    Ok(Rows::Plain(Sum::of(values)))
 }
 
 /// Version of the HDF5 library that the program runs with, as "1.10.8".
