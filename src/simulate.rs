@@ -10,8 +10,8 @@ use crate::model::{Complaint, Complaints, Joint, Journals, KeyPath, Model};
 use crate::plane::Vector;
 use crate::record::{Attribute, Header};
 use crate::run::{
-    self, Checkpoint, Checkpoints, Kept, Reached, Recorder, RulingCounts, Schedule, Stretch,
-    Watcher,
+    self, AnyRecorder, Checkpoint, Checkpoints, Erased, Kept, NotKept, Reached, Recorder,
+    RulingCounts, Schedule, Stretch, Watcher,
 };
 use crate::scalar::{Dual, F256, Scalar};
 use std::convert::Infallible;
@@ -121,6 +121,10 @@ impl<'a> Simulation<'a> {
     /// # Errors
     /// See [`Error`].
     pub fn run<R: Recorder>(self, recorder: &mut R, watch: Watcher<'_>) -> Ran<R> {
+        keeping(self.case, recorder, |recorder| self.simulate(recorder, watch))
+    }
+
+    fn simulate(self, recorder: &mut AnyRecorder<'_>, watch: Watcher<'_>) -> Simulated {
         let solver = &self.case.plan.solver;
         let Simulation { case, mechanism, schedule, from } = self;
         let interval = case.plan.checkpoint_interval.as_ref();
@@ -273,10 +277,7 @@ pub fn run_reference<R: Recorder>(
     watch: Watcher<'_>,
 ) -> Ran<R> {
     let task = Task { case, schedule, tolerance, checkpoints: None, from: None };
-    if is_kinematic(&mechanism) {
-        return run_kinematic(&task, mechanism, recorder, watch);
-    }
-    carry_explicitly(&task, mechanism, recorder, watch)
+    keeping(case, recorder, |recorder| follow(&task, mechanism, recorder, watch))
 }
 
 /// Carries a tangent along: the explicit engine in dual numbers over the arithmetic `S`, whose
@@ -289,20 +290,62 @@ pub fn run_tangent<S: Scalar, R: Recorder>(
     recorder: &mut R,
     watch: Watcher<'_>,
 ) -> Ran<R> {
+    let task = Task { case, schedule, tolerance, checkpoints: None, from: None };
+    keeping(case, recorder, |recorder| follow_tangent::<S>(&task, recorder, watch))
+}
+
+fn follow_tangent<S: Scalar>(
+    task: &Task<'_>,
+    recorder: &mut AnyRecorder<'_>,
+    watch: Watcher<'_>,
+) -> Simulated {
+    let case = task.case;
     let mechanism = assemble::<Dual<S>>(case).and_then(|mut mechanism| {
         let disturbed = mechanism.disturb_start(Dual::new(S::zero(), S::one()));
         disturbed.map_err(|complaints| case.reject(complaints))?;
         Ok(mechanism)
     });
-    let task = Task { case, schedule, tolerance, checkpoints: None, from: None };
     match mechanism {
-        Ok(mechanism) if is_kinematic(&mechanism) => {
-            run_kinematic(&task, mechanism, recorder, watch)
-        }
-        Ok(mechanism) => carry_explicitly(&task, mechanism, recorder, watch),
+        Ok(mechanism) => follow(task, mechanism, recorder, watch),
         Err(source) => (Statistics::default(), Err(failed(case, source))),
     }
 }
+
+/// Runs a mechanism without IDA.
+fn follow<S: Scalar>(
+    task: &Task<'_>,
+    mechanism: Mechanism<S>,
+    recorder: &mut AnyRecorder<'_>,
+    watch: Watcher<'_>,
+) -> Simulated {
+    match is_kinematic(&mechanism) {
+        true => run_kinematic(task, mechanism, recorder, watch),
+        false => carry_explicitly(task, mechanism, recorder, watch),
+    }
+}
+
+/// A simulation that keeps what it tells in a recorder, and ends with that one's error if it fails.
+fn keeping<R: Recorder>(
+    case: &Case,
+    recorder: &mut R,
+    simulate: impl FnOnce(&mut AnyRecorder<'_>) -> Simulated,
+) -> Ran<R> {
+    let mut erased = Erased::new(recorder);
+    let (statistics, ran) = simulate(&mut erased);
+    let told = |error| match error {
+        Error::Failed { case, source } => Error::Failed { case, source },
+        Error::Interrupted { time } => Error::Interrupted { time },
+        Error::Stopped { time } => Error::Stopped { time },
+        Error::Recorder(not_kept) => match erased.failure.take() {
+            Some(failure) => Error::Recorder(failure),
+            None => failed(case, not_kept),
+        },
+    };
+    (statistics, ran.map_err(told))
+}
+
+/// Statistics and outcome with any recorder.
+type Simulated = (Statistics, Result<(), Error<NotKept>>);
 
 /// Whether nothing is left to integrate: no freedom and no clearance.
 fn is_kinematic<S: Scalar>(mechanism: &Mechanism<S>) -> bool {
@@ -321,12 +364,12 @@ struct Task<'a> {
     from: Option<&'a str>,
 }
 
-fn run_kinematic<S: Scalar, R: Recorder>(
+fn run_kinematic<S: Scalar>(
     task: &Task<'_>,
     mechanism: Mechanism<S>,
-    recorder: &mut R,
+    recorder: &mut AnyRecorder<'_>,
     watch: Watcher<'_>,
-) -> Ran<R> {
+) -> Simulated {
     in_stretches(task, &mechanism, recorder, |stretch, recorder| {
         let mut mechanism = mechanism.clone();
         let ran = run::kinematic(&mut mechanism, task.schedule, stretch, recorder, watch);
@@ -334,29 +377,28 @@ fn run_kinematic<S: Scalar, R: Recorder>(
     })
 }
 
-fn carry_explicitly<S: Scalar, R: Recorder>(
+fn carry_explicitly<S: Scalar>(
     task: &Task<'_>,
     mechanism: Mechanism<S>,
-    recorder: &mut R,
+    recorder: &mut AnyRecorder<'_>,
     watch: Watcher<'_>,
-) -> Ran<R> {
+) -> Simulated {
     let options = explicit_options(&task.case.plan.solver, task.tolerance);
     let make = |mechanism| Explicit::new(mechanism, options);
     carry(task, mechanism, make, recorder, watch)
 }
 
 /// Runs an engine, a new one from each checkpoint on, if it can be made.
-fn carry<S, E, R>(
+fn carry<S, E>(
     task: &Task<'_>,
     mechanism: Mechanism<S>,
     make: impl Fn(Mechanism<S>) -> Result<E, E::Error>,
-    recorder: &mut R,
+    recorder: &mut AnyRecorder<'_>,
     watch: Watcher<'_>,
-) -> Ran<R>
+) -> Simulated
 where
     S: Scalar,
     E: Engine<S, System = Mechanism<S>>,
-    R: Recorder,
 {
     let Task { case, schedule, tolerance, .. } = *task;
     in_stretches(task, &mechanism, recorder, |stretch, recorder| match make(mechanism.clone()) {
@@ -369,15 +411,15 @@ where
 }
 
 /// What the engine of a stretch counted, and what the stretch has come to.
-type Leg<S, R> = (Vec<Count>, Result<Reached<S>, Error<<R as Recorder>::Error>>);
+type Leg<S> = (Vec<Count>, Result<Reached<S>, Error<NotKept>>);
 
 /// Runs from checkpoint to checkpoint, each stretch from what is kept at the last alone.
-fn in_stretches<S: Scalar, R: Recorder>(
+fn in_stretches<S: Scalar>(
     task: &Task<'_>,
     mechanism: &Mechanism<S>,
-    recorder: &mut R,
-    mut leg: impl FnMut(&Stretch<'_, S>, &mut R) -> Leg<S, R>,
-) -> Ran<R> {
+    recorder: &mut AnyRecorder<'_>,
+    mut leg: impl FnMut(&Stretch<'_, S>, &mut AnyRecorder<'_>) -> Leg<S>,
+) -> Simulated {
     let from = task.from.map(|text| Checkpoint::from_text(text, mechanism)).transpose();
     let mut from = match from {
         Ok(from) => from,

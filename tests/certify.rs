@@ -8,6 +8,7 @@ mod simulated;
 use compared::{Outcome, Trial};
 use freeplay::case::Case;
 use freeplay::certify::{self, Certificate, Reference, Told};
+use freeplay::model::Owner;
 use freeplay::run::{Event, EventKind, Peak, Progress};
 use freeplay::simulate::Simulation;
 use simulated::truth::{Table, digits, scaled, scaled_truth};
@@ -92,8 +93,8 @@ fn assert_confirmed(path: &str, duration: &str, set: &[&str]) {
         assert!(claimed > 12.0, "{set:?}: only {claimed:.1} digits at {time:e} s");
         assert!(off <= 10f64.powf(-claimed), "{set:?}: {claimed:.1} digits, off by {off:e}");
     }
-    let kinds = |events: &[Event]| -> Vec<(EventKind, usize)> {
-        events.iter().map(|event| (event.kind, event.clearance)).collect()
+    let kinds = |events: &[Event]| -> Vec<(EventKind, Owner)> {
+        events.iter().map(|event| (event.kind, event.owner)).collect()
     };
     assert_eq!(kinds(&trajectory.events), kinds(&finer.events), "{set:?}");
     let parting = certificate.parting;

@@ -8,7 +8,8 @@
 mod simulated;
 
 use freeplay::mechanism::Observation;
-use freeplay::run::{Progress, Trajectory};
+use freeplay::model::Owner;
+use freeplay::run::{EventKind, Progress, Trajectory};
 use freeplay::simulate::Simulation;
 use simulated::{Kept, case_of, simulate, words};
 use std::ops::ControlFlow;
@@ -148,12 +149,17 @@ fn a_chain_that_comes_to_lie_flat_says_where_it_is_singular() {
         let engine = format!("solver.engine={engine}");
         let case = case_of(&four_bars(1), &[&engine, "run.duration=1.0"]);
         let mut go_on = |_: &Progress| ControlFlow::Continue(());
-        let (_, ran) = Simulation::new(&case).unwrap().run(&mut Trajectory::default(), &mut go_on);
+        let mut kept = Trajectory::default();
+        let (_, ran) = Simulation::new(&case).unwrap().run(&mut kept, &mut go_on);
         let error = words(&ran.unwrap_err());
         assert!(error.contains("singular position"), "{error}");
+        let [event] = kept.events[..] else { panic!("{:?}", kept.events) };
+        assert_eq!(event.kind, EventKind::Singular);
+        assert!(matches!(event.owner, Owner::Joint(_)) && event.rate < 1e-10, "{event:?}");
         // the cranks lie flat at the time that energy tells
         let flat = time_to(1, 0.0);
         let told = error.split("t = ").nth(1).and_then(|rest| rest.split(' ').next()).unwrap();
         assert!((told.parse::<f64>().unwrap() - flat).abs() < 1e-5, "{error} {flat}");
+        assert!((event.time - flat).abs() < 1e-5, "{event:?} {flat}");
     }
 }

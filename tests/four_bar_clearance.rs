@@ -5,6 +5,7 @@
 mod simulated;
 
 use freeplay::mechanism::Observation;
+use freeplay::model::Owner;
 use freeplay::run::EventKind;
 use simulated::drift::largest_drift;
 use simulated::truth::{Table, digits, scaled, scaled_truth};
@@ -137,7 +138,10 @@ fn assert_sound(name: &str, kept: &Kept) {
     for k in 0..kept.last().clearances.len() {
         let own = || kept.contacts.iter().filter(move |contact| contact.clearance == k);
         let times_of = |kind| {
-            let events = kept.events.iter().filter(move |e| e.clearance == k && e.kind == kind);
+            let events = kept
+                .events
+                .iter()
+                .filter(move |e| e.owner == Owner::Clearance(k) && e.kind == kind);
             events.map(|event| event.time).collect::<Vec<_>>()
         };
         let begins: Vec<f64> = own().map(|contact| contact.begin).collect();

@@ -5,6 +5,8 @@
 mod simulated;
 
 use freeplay::mechanism::{BodyObservation, Observation};
+use freeplay::model::Owner;
+use freeplay::run::{Event, EventKind};
 use simulated::{Kept, case, case_of, root, simulate};
 use std::f64::consts::PI;
 
@@ -291,6 +293,32 @@ fn a_ramp_ends_at_its_speed_and_the_work_is_the_energy() {
         assert_is(&kept, "angle", |s| body(s, 0).angle, angle);
         let energy = |t: f64| 0.5 * (0.015 + 0.045) * rate(t).powi(2);
         assert_is(&kept, "work", |s| s.energy.drive_work, energy);
+        assert_eq!(kept.events, [changes(0.213, Owner::Drive(0))]);
+    }
+}
+
+/// The event that a course's corner is.
+fn changes(time: f64, owner: Owner) -> Event {
+    Event { time, owner, kind: EventKind::CourseChanges, rate: 0.0 }
+}
+
+#[test]
+fn corners_of_what_is_prescribed_are_events_of_its_drive_or_load() {
+    // a wheel that a torque turns, beside a rod that a drive turns
+    let rest = "[bodies.wheel]\nmass = 1.0\ninertia = 0.02\npoints = { C = [0.0, 0.0] }\n\
+        [joints.W]\nkind = \"revolute\"\nbetween = [\"ground.P\", \"wheel.C\"]\n\
+        [loads.steady]\nkind = \"torque\"\nbody = \"wheel\"\ntorque = 0.1\n\
+        [loads.growing]\nkind = \"torque\"\nbody = \"wheel\"\n\
+        torque = { kind = \"table\", times = [0.0, 0.02, 0.04, 0.1, 0.2, 0.3, 8.0, 9.0, 10.0], \
+        values = [0.0, 0.0, 0.1, 0.1, 0.4, 0.2, 0.1, 0.0, 0.0] }\n\
+        [start]\nwheel = { angle = 0.0, fixed = true }\n\
+        [drives.d]\njoint = \"O\"\nkind = \"ramp\"\nspeed_rpm = 60.0\ntime = 0.05\n";
+    for kept in runs(&format!("{PIVOT}{rest}")) {
+        let knots = [0.1, 0.2, 0.3].map(|time| changes(time, Owner::Load(1)));
+        let mut expected = vec![changes(0.05, Owner::Drive(0))];
+        expected.extend(knots.iter().filter(|knot| knot.time < kept.last().time));
+        assert!(expected.len() > 2);
+        assert_eq!(kept.events, expected);
     }
 }
 

@@ -10,6 +10,7 @@
 use crate::case::{Case, EngineName, Precision};
 use crate::digits::{self, Likes, Scales, Sizes, digits};
 use crate::mechanism::Mechanism;
+use crate::model::Owner;
 use crate::run::{Contact, Event, EventKind, Trajectory, Watcher};
 use crate::simulate::{self, Simulation, assemble};
 use std::convert::Infallible;
@@ -226,7 +227,7 @@ impl Found {
     }
 
     fn clearance(&self) -> usize {
-        self.any().next().map_or(0, |event| event.clearance)
+        self.any().next().map_or(0, |event| event.owner.index())
     }
 }
 
@@ -234,7 +235,8 @@ impl Found {
 /// depth of its contact, or the height of the flight on its other side, whichever is less.
 fn weight(event: &Event, of: &Trajectory) -> f64 {
     let begins = event.kind == EventKind::ContactBegins;
-    let same = of.contacts.iter().filter(|contact| contact.clearance == event.clearance);
+    let same =
+        of.contacts.iter().filter(|contact| Owner::Clearance(contact.clearance) == event.owner);
     let edge = |contact: &Contact| if begins { contact.begin } else { contact.end };
     let depth = same.clone().find(|contact| edge(contact) == event.time);
     let depth = depth.map_or(f64::INFINITY, |contact| contact.peak_penetration);
@@ -306,7 +308,7 @@ mod tests {
     /// Contacts 1 µm deep that begin and end at these times at 0.1 m/s; samples every second from 0
     /// to 10, whose clearance vector is `off` times the clearance at each.
     fn trajectory(contacts: &[[f64; 2]], off: impl Fn(f64) -> f64) -> Trajectory {
-        let event = |time, kind, rate| Event { time, clearance: 0, kind, rate };
+        let event = |time, kind, rate| Event { time, owner: Owner::default(), kind, rate };
         let events = contacts.iter().flat_map(|[begin, end]| {
             [event(*begin, ContactBegins, 0.1), event(*end, ContactEnds, -0.1)]
         });

@@ -10,11 +10,10 @@ impl Certificate {
     pub fn json(&self, told: &Told<'_>) -> Value {
         let reference = &self.reference;
         let growth = &reference.growth;
-        let name = |clearance: usize| told.names.clearances.get(clearance);
         let parting = self.parting.as_ref().map(|parting| {
             json!({
                 "time": parting.event.time,
-                "clearance": name(parting.event.clearance),
+                "clearance": parting.event.owner.name(told.names),
                 "kind": parting.event.kind as u8,
                 "only_in": if parting.in_reference { "reference" } else { "run" },
                 "nearest_in_the_other": parting.nearest.map(|event| event.time),

@@ -171,9 +171,13 @@ fn event_times_wrong(pair: &reference::Pair, shared: &[f64]) -> Vec<f64> {
             let turning = 1.0 / angular_velocity;
             let slowness = match event.kind {
                 EventKind::ContactBegins | EventKind::ContactEnds => {
-                    turning.max(clearances[event.clearance] / event.rate.abs())
+                    let clearance = clearances.get(event.owner.index()).copied().unwrap_or(0.0);
+                    turning.max(clearance / event.rate.abs())
                 }
                 EventKind::FrictionKink | EventKind::Tension => turning,
+                // it is where the case has it
+                EventKind::CourseChanges => 0.0,
+                EventKind::Singular => turning,
             };
             // a start without an error moves nothing, however long an event takes
             let moved = if shared > 0.0 { shared * slowness } else { 0.0 };
@@ -366,10 +370,11 @@ impl Certificate {
 mod tests {
     use super::*;
     use crate::mechanism::Observation;
+    use crate::model::Owner;
     use crate::run::Contact;
 
     fn event(time: f64) -> Event {
-        Event { time, clearance: 0, kind: EventKind::ContactBegins, rate: 1.0 }
+        Event { time, owner: Owner::default(), kind: EventKind::ContactBegins, rate: 1.0 }
     }
 
     /// Samples at 0, 1, … 4 s, and an event, a contact and a peak behind each.

@@ -224,9 +224,8 @@ fn ms(time: f64) -> String {
 
 /// An event, and where.
 fn event_words(event: &Event, names: &Names) -> String {
-    let joint = names.clearances.get(event.clearance).map_or("?", String::as_str);
     let what = event.kind.sentence();
-    format!("{what} in {joint} at {}", ms(event.time))
+    format!("{what} in {} at {}", event.owner.name(names), ms(event.time))
 }
 
 fn parting_words(parting: &Parting, names: &Names) -> String {

@@ -112,7 +112,7 @@ impl Certificate {
             name: "event_in_run",
             unit: "1",
             long_name: "whether the run under test has this event",
-            stored: Values::Flag(&["missing", "found", "beyond_doubles"]),
+            stored: Values::Flag(&[(0, "missing"), (1, "found"), (2, "beyond_doubles")]),
             along: Dimension::Event,
             values: found.collect(),
         };

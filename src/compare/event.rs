@@ -2,8 +2,10 @@
 
 use super::Error;
 use crate::digits::{self, Likes};
+use crate::model::Owner;
 use crate::record::ResultFile;
 use crate::run::{Contact, Event, EventKind};
+use std::collections::BTreeSet;
 
 /// An event that both have.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -23,11 +25,11 @@ impl Pair {
     }
 }
 
-/// Events of one kind in one clearance.
+/// Events of one kind and one owner.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EventRow {
-    /// Index of the clearance.
-    pub clearance: usize,
+    /// What they belong to.
+    pub owner: Owner,
     /// Kind, by its name in result files.
     pub kind: &'static str,
     /// Events that both have, in the order of the reference.
@@ -58,8 +60,8 @@ pub struct ContactPair {
 pub struct Unmatched {
     /// Time (s).
     pub time: f64,
-    /// Index of the clearance.
-    pub clearance: usize,
+    /// What it belongs to.
+    pub owner: Owner,
     /// Kind, by its name in result files.
     pub kind: &'static str,
     /// Whether the first file has it.
@@ -69,7 +71,7 @@ pub struct Unmatched {
 /// The events of two results up to a time.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EventComparison {
-    /// By clearance and kind; rows without events in either are left out.
+    /// By owner and kind; rows without events in either are left out.
     pub rows: Vec<EventRow>,
     /// Contacts that both have.
     pub contacts: Vec<ContactPair>,
@@ -86,7 +88,7 @@ impl EventComparison {
         until: f64,
     ) -> Result<EventComparison, Error> {
         let (theirs_events, reference_events) = (theirs.events()?, reference.events()?);
-        let rows = rows(&theirs_events, &reference_events, theirs.clearances().len(), until);
+        let rows = rows(&theirs_events, &reference_events, until);
         let contacts = contacts(&theirs.contacts()?, &reference.contacts()?, &rows);
         Ok(EventComparison { rows, contacts })
     }
@@ -95,8 +97,8 @@ impl EventComparison {
     pub fn first_unmatched(&self) -> Option<Unmatched> {
         let unmatched = self.rows.iter().flat_map(|row| {
             let of = move |time: &f64, in_theirs| {
-                let EventRow { clearance, kind, .. } = *row;
-                Unmatched { time: *time, clearance, kind, in_theirs }
+                let EventRow { owner, kind, .. } = *row;
+                Unmatched { time: *time, owner, kind, in_theirs }
             };
             let theirs = row.only_theirs.iter().map(move |time| of(time, true));
             theirs.chain(row.only_reference.iter().map(move |time| of(time, false)))
@@ -105,13 +107,13 @@ impl EventComparison {
     }
 }
 
-/// Events up to a time (s), by clearance and kind.
-fn rows(theirs: &[Event], reference: &[Event], clearances: usize, until: f64) -> Vec<EventRow> {
+/// Events up to a time (s), by owner and kind.
+fn rows(theirs: &[Event], reference: &[Event], until: f64) -> Vec<EventRow> {
     let likes = digits::events(theirs, reference, until);
-    let sorts = (0..clearances).flat_map(|k| EventKind::ALL.map(|kind| (k, kind, kind.word())));
-    let rows = sorts.map(|(clearance, kind, name)| {
-        let is = |event: &Event| event.clearance == clearance && event.kind == kind;
-        row(&likes, theirs, reference, until, is, (clearance, name))
+    let sorts = theirs.iter().chain(reference).map(|event| (event.owner, event.kind));
+    let rows = sorts.collect::<BTreeSet<(Owner, EventKind)>>().into_iter().map(|(owner, kind)| {
+        let is = |event: &Event| event.owner == owner && event.kind == kind;
+        row(&likes, theirs, reference, until, is, (owner, kind.word()))
     });
     let holds = |row: &EventRow| {
         !(row.pairs.is_empty() && row.only_theirs.is_empty() && row.only_reference.is_empty())
@@ -119,14 +121,14 @@ fn rows(theirs: &[Event], reference: &[Event], clearances: usize, until: f64) ->
     rows.filter(holds).collect()
 }
 
-/// The events of one kind in one clearance, told by `is`.
+/// The events of one kind and one owner, told by `is`.
 fn row(
     likes: &Likes,
     theirs: &[Event],
     reference: &[Event],
     until: f64,
     is: impl Fn(&Event) -> bool,
-    (clearance, kind): (usize, &'static str),
+    (owner, kind): (Owner, &'static str),
 ) -> EventRow {
     let times = |events: &[Event], which: &[usize]| -> Vec<f64> {
         which.iter().map(|k| events[*k]).filter(&is).map(|event| event.time).collect()
@@ -141,7 +143,7 @@ fn row(
         })
     });
     EventRow {
-        clearance,
+        owner,
         kind,
         pairs: pairs.collect(),
         only_theirs: times(theirs, &likes.only_theirs),
@@ -156,7 +158,9 @@ fn contacts(theirs: &[Contact], reference: &[Contact], rows: &[EventRow]) -> Vec
         contacts.iter().find(is).copied()
     };
     let begins = rows.iter().filter(|row| row.kind == "contact_begins");
-    let pairs = begins.flat_map(|row| row.pairs.iter().map(move |pair| (row.clearance, pair)));
+    let pairs = begins.filter_map(|row| Some((row.owner.clearance()?, &row.pairs)));
+    let pairs =
+        pairs.flat_map(|(clearance, pairs)| pairs.iter().map(move |pair| (clearance, pair)));
     let mut contacts: Vec<ContactPair> = pairs
         .filter_map(|(clearance, pair)| {
             let ours = find(reference, clearance, pair.time)?;
@@ -181,14 +185,17 @@ mod tests {
 
     fn events(times: &[f64]) -> Vec<Event> {
         let kind = EventKind::ContactBegins;
-        times.iter().map(|time| Event { time: *time, clearance: 0, kind, rate: *time }).collect()
+        times
+            .iter()
+            .map(|time| Event { time: *time, owner: Owner::default(), kind, rate: *time })
+            .collect()
     }
 
     #[test]
     fn pairs_tell_times_and_rates_and_what_is_alone_is_told_beside_them() {
-        let rows = rows(&events(&[1.0, 2.01, 2.4]), &events(&[1.0, 2.0, 4.0]), 1, 10.0);
+        let rows = rows(&events(&[1.0, 2.01, 2.4]), &events(&[1.0, 2.0, 4.0]), 10.0);
         let [row] = &rows[..] else { panic!("{rows:?}") };
-        assert_eq!((row.clearance, row.kind), (0, "contact_begins"));
+        assert_eq!((row.owner, row.kind), (Owner::Clearance(0), "contact_begins"));
         assert_eq!(row.pairs[1].theirs, 2.01);
         assert!((row.pairs[1].later() - 0.01).abs() < 1e-15);
         assert!((row.pairs[1].faster - 0.01).abs() < 1e-15);
@@ -196,13 +203,13 @@ mod tests {
     }
 
     #[test]
-    fn the_first_event_that_only_one_has_is_found_across_clearances() {
+    fn the_first_event_that_only_one_has_is_found_across_owners() {
         let mut other = events(&[1.0, 4.0]);
-        other.push(Event { clearance: 1, ..other[1] });
+        other.push(Event { owner: Owner::Clearance(1), ..other[1] });
         other[2].time = 2.0;
         let comparison =
-            EventComparison { rows: rows(&other, &events(&[1.0, 3.0]), 2, 10.0), contacts: vec![] };
+            EventComparison { rows: rows(&other, &events(&[1.0, 3.0]), 10.0), contacts: vec![] };
         let first = comparison.first_unmatched().unwrap();
-        assert_eq!((first.time, first.clearance, first.in_theirs), (2.0, 1, true));
+        assert_eq!((first.time, first.owner, first.in_theirs), (2.0, Owner::Clearance(1), true));
     }
 }

@@ -115,7 +115,7 @@ impl Comparison {
         };
         let row = |row: &EventRow| {
             json!({
-                "clearance": name(row.clearance),
+                "clearance": row.owner.name(&self.parts.0),
                 "kind": row.kind,
                 "in_both": row.pairs.iter().map(pair).collect::<Vec<_>>(),
                 "only_theirs": row.only_theirs,
@@ -134,7 +134,7 @@ impl Comparison {
         let first = events.first_unmatched().map(|first| {
             json!({
                 "time": first.time,
-                "clearance": name(first.clearance),
+                "clearance": first.owner.name(&self.parts.0),
                 "kind": first.kind,
                 "only_in": if first.in_theirs { "theirs" } else { "reference" },
             })

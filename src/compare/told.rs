@@ -218,7 +218,7 @@ impl Comparison {
                 "\nEvents, one to one; the first without its like: {} in {} at {} s, only in {}; \
                  differences are those before it:",
                 first.kind.replace('_', " "),
-                self.parts.0.clearances[first.clearance],
+                first.owner.name(&self.parts.0),
                 seconds(first.time),
                 if first.in_theirs { "theirs" } else { "the reference" }
             )?,
@@ -230,9 +230,8 @@ impl Comparison {
     fn event_cells(&self, row: &EventRow, until: f64) -> Vec<String> {
         let before = row.pairs.iter().take_while(|pair| pair.time < until);
         let worst = before.max_by(|a, b| a.later().abs().total_cmp(&b.later().abs()));
-        let clearance = &self.parts.0.clearances[row.clearance];
         vec![
-            format!("{clearance} {}", row.kind.replace('_', " ")),
+            format!("{} {}", row.owner.name(&self.parts.0), row.kind.replace('_', " ")),
             row.pairs.len().to_string(),
             row.only_theirs.len().to_string(),
             row.only_reference.len().to_string(),

@@ -5,7 +5,8 @@
 //! so that no event can be taken for its neighbour, nor than a hundredth of the time looked at.
 //! Each has one like at most.
 
-use crate::run::Event;
+use crate::model::Owner;
+use crate::run::{Event, EventKind};
 
 /// Farthest that an event may be from its like, over the time looked at.
 const WIDEST: f64 = 0.01;
@@ -42,7 +43,7 @@ pub struct Parting {
 pub fn events(theirs: &[Event], reference: &[Event], until: f64) -> Likes {
     let mut likes = Likes { of_reference: vec![None; reference.len()], ..Likes::default() };
     let mut taken = vec![false; theirs.len()];
-    let mut known: Vec<(u8, usize)> = reference.iter().map(sort_of).collect();
+    let mut known: Vec<(EventKind, Owner)> = reference.iter().map(sort_of).collect();
     known.sort_unstable();
     known.dedup();
     for sort in known {
@@ -102,9 +103,9 @@ fn window(times: &[f64], k: usize, widest: f64) -> f64 {
     (0.5 * before.min(after)).min(widest).max(f64::EPSILON * times[k])
 }
 
-/// Kind and clearance.
-fn sort_of(event: &Event) -> (u8, usize) {
-    (event.kind as u8, event.clearance)
+/// Kind and owner.
+fn sort_of(event: &Event) -> (EventKind, Owner) {
+    (event.kind, event.owner)
 }
 
 impl Likes {
@@ -137,7 +138,7 @@ mod tests {
     fn contacts(times: &[f64]) -> Vec<Event> {
         let event = |(k, time): (usize, &f64)| {
             let kind = if k % 2 == 0 { ContactBegins } else { ContactEnds };
-            Event { time: *time, clearance: 0, kind, rate: 1.0 }
+            Event { time: *time, owner: Owner::default(), kind, rate: 1.0 }
         };
         times.iter().enumerate().map(event).collect()
     }
@@ -184,7 +185,7 @@ mod tests {
     #[test]
     fn contacts_in_another_clearance_are_no_likes() {
         let mut theirs = contacts(&[10.0, 20.0]);
-        theirs.iter_mut().for_each(|event| event.clearance = 1);
+        theirs.iter_mut().for_each(|event| event.owner = Owner::Clearance(1));
         let likes = events(&theirs, &contacts(&[10.0, 20.0]), END);
         assert_eq!((likes.only_reference, likes.only_theirs), (vec![0, 1], vec![0, 1]));
     }

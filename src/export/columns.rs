@@ -40,7 +40,7 @@ pub struct Column {
     /// How its values are stored in the result file.
     pub values: Values,
     /// Words for the values 0, 1, …: an event's kind, a clearance's name. Left out over time.
-    pub words: Option<Vec<String>>,
+    pub words: Option<Vec<(i32, String)>>,
 }
 
 /// The columns of a table, and how many rows it has.
@@ -100,11 +100,16 @@ impl Columns {
 }
 
 /// Words for the values of a dataset, where a reader without its attributes would be lost.
-fn words(file: &ResultFile, dataset: &Dataset) -> Option<Vec<String>> {
+fn words(file: &ResultFile, dataset: &Dataset) -> Option<Vec<(i32, String)>> {
     match (dataset.values, dataset.source) {
-        (Values::Index, _) => Some(file.clearances().to_vec()),
+        (Values::Index, _) if dataset.name == "event_owner_index" => None,
+        (Values::Index, _) => {
+            let names = file.clearances().iter().zip(0..);
+            Some(names.map(|(name, index)| (index, name.clone())).collect())
+        }
         (Values::Flag(meanings), Source::Event(_)) => {
-            Some(meanings.iter().map(|&meaning| meaning.to_owned()).collect())
+            let meanings = meanings.iter();
+            Some(meanings.map(|(flag, word)| (i32::from(*flag), (*word).to_owned())).collect())
         }
         _ => None,
     }
@@ -113,7 +118,8 @@ fn words(file: &ResultFile, dataset: &Dataset) -> Option<Vec<String>> {
 impl Column {
     /// The word for a value; `None` if it stands for itself, or there is none.
     pub fn word(&self, value: f64) -> Option<&str> {
-        let place = (value >= 0.0).then_some(value as usize)?;
-        self.words.as_ref()?.get(place).map(String::as_str)
+        let words = self.words.as_ref()?;
+        let place = words.binary_search_by(|(of, _)| f64::from(*of).total_cmp(&value)).ok()?;
+        Some(&words[place].1)
     }
 }

@@ -9,6 +9,7 @@
 use super::Error;
 use super::decimate::Point;
 use super::runs::Run;
+use crate::model::Owner;
 use crate::record::Dimension;
 use crate::run::{Contact, Event, EventKind, Peak};
 
@@ -123,7 +124,7 @@ fn zero(time: f64, rate: f64) -> Moment {
 
 fn end_rate(run: &Run, contact: &Contact) -> f64 {
     let ends = |event: &&Event| {
-        event.clearance == contact.clearance
+        event.owner == Owner::Clearance(contact.clearance)
             && event.kind == EventKind::ContactEnds
             && event.time == contact.end
     };

@@ -6,6 +6,7 @@ use crate::clearance::Mode;
 use crate::dae::{Fault, State};
 use crate::linear::Singular;
 use crate::load::Powers;
+use crate::model::Owner;
 use crate::plane::{Motion, Vector, Wrench};
 use crate::scalar::Scalar;
 
@@ -158,7 +159,7 @@ impl<S: Scalar> Mechanism<S> {
 
     /// The joint or drive whose constraints depend most on the others at a state, and the share of
     /// their mass–constraint matrix that the others leave; `None` without constraints.
-    pub fn weakest_joint(&mut self, state: State<'_, S>) -> Option<(String, f64)> {
+    pub fn weakest_joint(&mut self, state: State<'_, S>) -> Option<(Owner, f64)> {
         self.place(&state);
         self.couple();
         let whole: Vec<f64> = self.now.matrix.diagonal().collect();
@@ -169,7 +170,7 @@ impl<S: Scalar> Mechanism<S> {
                 left.enumerate().min_by(|a, b| a.1.total_cmp(&b.1))?
             }
         };
-        Some((self.layout.key(&self.model, row).to_string(), left))
+        Some((self.layout.owner(row), left))
     }
 
     /// Force and torque that make each driven body move as prescribed, by Newton and Euler from
@@ -203,11 +204,8 @@ impl<S: Scalar> Mechanism<S> {
             let torque = self.now.driving[index].1;
             return if self.layout.driven[index].second { torque } else { -torque };
         }
-        let constraint = self
-            .layout
-            .constraints
-            .iter()
-            .find(|row| row.origin == super::layout::Origin::Drive(drive));
+        let constraint =
+            self.layout.constraints.iter().find(|row| row.owner == Owner::Drive(drive));
         constraint.map_or(S::zero(), |row| -self.now.lambda[row.first])
     }
 

@@ -6,7 +6,7 @@
 
 use crate::joint::{AngleDrive, Constraint, Derived, MOST_BODIES, Pair, Relation, Travel};
 use crate::linear::Symmetric;
-use crate::model::{Complaint, GROUND, KeyPath, Model};
+use crate::model::{Complaint, GROUND, KeyPath, Model, Owner};
 use crate::plane::{Pose, Vector};
 use crate::scalar::Scalar;
 
@@ -35,19 +35,12 @@ pub(super) struct DrivenBody {
     pub accelerates: bool,
 }
 
-/// Where a constraint comes from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Origin {
-    Joint(usize),
-    Drive(usize),
-}
-
 /// A constraint and the place of its rows among the multipliers.
 #[derive(Debug, Clone)]
 pub(super) struct Row<S> {
     pub constraint: Constraint<S>,
     pub first: usize,
-    pub origin: Origin,
+    pub owner: Owner,
 }
 
 /// A body with unknowns that two constraint rows share: it couples their multipliers.
@@ -117,13 +110,13 @@ impl<S: Scalar> Layout<S> {
         let mut constraints = Vec::new();
         let mut complaints = Vec::new();
         let mut rows = 0;
-        for (constraint, origin) in equations(model, &driven) {
+        for (constraint, owner) in equations(model, &driven) {
             if constraint.bodies().iter().all(|body| !matches!(roles[*body], Role::Free(_))) {
-                complaints.push(prescribed_twice(model, origin));
+                complaints.push(prescribed_twice(model, owner));
             }
             let first = rows;
             rows += constraint.rows();
-            constraints.push(Row { constraint, first, origin });
+            constraints.push(Row { constraint, first, owner });
         }
         if complaints.is_empty() && rows > coordinates {
             complaints.push(Complaint {
@@ -159,10 +152,10 @@ impl<S: Scalar> Layout<S> {
         }
     }
 
-    /// The key of the joint or drive that a constraint row belongs to.
-    pub fn key(&self, model: &Model<S>, row: usize) -> KeyPath {
-        let owner = self.constraints.iter().rev().find(|constraint| constraint.first <= row);
-        owner.map_or(KeyPath::new(["joints"]), |owner| key(model, owner.origin))
+    /// The joint or drive that a constraint row belongs to.
+    pub fn owner(&self, row: usize) -> Owner {
+        let found = self.constraints.iter().rev().find(|constraint| constraint.first <= row);
+        found.map_or(Owner::Joint(0), |found| found.owner)
     }
 }
 
@@ -204,17 +197,9 @@ fn couplings<S: Scalar>(
     (even, uneven)
 }
 
-/// The key of a joint or a drive.
-pub(super) fn key<S: Scalar>(model: &Model<S>, origin: Origin) -> KeyPath {
-    match origin {
-        Origin::Joint(joint) => KeyPath::new(["joints", &model.names().joints[joint]]),
-        Origin::Drive(drive) => KeyPath::new(["drives", &model.names().drives[drive]]),
-    }
-}
-
-fn prescribed_twice<S: Scalar>(model: &Model<S>, origin: Origin) -> Complaint {
+fn prescribed_twice<S: Scalar>(model: &Model<S>, owner: Owner) -> Complaint {
     Complaint {
-        key: key(model, origin),
+        key: owner.key(model.names()),
         message: "joins two bodies whose motion the drives prescribe already; \
                   remove it, or give it clearance"
             .into(),
@@ -250,7 +235,7 @@ fn driven_bodies<S: Scalar>(model: &Model<S>) -> Vec<DrivenBody> {
 }
 
 /// Every ideal joint and drive that eliminates no body.
-fn equations<S: Scalar>(model: &Model<S>, driven: &[DrivenBody]) -> Vec<(Constraint<S>, Origin)> {
+fn equations<S: Scalar>(model: &Model<S>, driven: &[DrivenBody]) -> Vec<(Constraint<S>, Owner)> {
     let joints = model.joints().iter().enumerate().filter(|(index, joint)| {
         joint.clearance.is_none() && driven.iter().all(|driven| driven.joint != *index)
     });
@@ -265,12 +250,10 @@ fn equations<S: Scalar>(model: &Model<S>, driven: &[DrivenBody]) -> Vec<(Constra
             }
             _ => Constraint::Drive(AngleDrive { i, j, course }),
         };
-        (constraint, Origin::Drive(index))
+        (constraint, Owner::Drive(index))
     };
     joints
-        .map(|(index, joint)| {
-            (Constraint::joint(joint.relation, &joint.ends), Origin::Joint(index))
-        })
+        .map(|(index, joint)| (Constraint::joint(joint.relation, &joint.ends), Owner::Joint(index)))
         .chain(drives.map(driving))
         .collect()
 }

@@ -2,10 +2,10 @@
 //! quick to make: a run looks at it at every step, for their extremes.
 
 use super::Mechanism;
-use super::layout::{Layout, Origin, Role, Row};
+use super::layout::{Layout, Role, Row};
 use crate::clearance::Clearance;
 use crate::course::Course;
-use crate::model::Model;
+use crate::model::{Model, Owner};
 use crate::plane::Vector;
 use crate::scalar::Scalar;
 
@@ -95,7 +95,7 @@ pub(super) fn force_sources<S: Scalar>(model: &Model<S>, layout: &Layout<S>) -> 
         if let Some(place) = layout.driven.iter().position(|driven| driven.joint == index) {
             return Some(ForceSource::Driven(place));
         }
-        let its = |row: &Row<S>| row.origin == Origin::Joint(index);
+        let its = |row: &Row<S>| row.owner == Owner::Joint(index);
         layout.constraints.iter().position(its).map(ForceSource::Constraint)
     };
     let joints = model.joints().iter().map(|joint| joint.clearance).enumerate();

@@ -28,7 +28,7 @@ use crate::friction::{FrictionLaw, Inner, MOST_INNER};
 use crate::joint::{Arms, Blocks, MOST_BODIES, Relation};
 use crate::linear::Symmetric;
 use crate::load::Load;
-use crate::model::{Complaint, Model};
+use crate::model::{Complaint, Model, Owner};
 use crate::plane::{Motion, Pose, Vector, Wrench};
 use crate::scalar::Scalar;
 use layout::{Layout, Role};
@@ -235,15 +235,18 @@ impl<S: Scalar> Mechanism<S> {
         self.ledger
     }
 
-    /// Times (s) at which a derivative of what is prescribed jumps, in their order: engines begin
-    /// anew there.
-    pub fn corners(&self) -> Vec<S> {
-        let drives = self.model.drives().iter().map(|drive| &drive.course);
-        let loads = self.model.loads().iter().filter_map(|load| load.course());
-        let courses = drives.chain(loads);
-        let mut corners: Vec<S> = courses.flat_map(|course| course.corners()).copied().collect();
-        corners.sort_by(|a, b| a.partial_cmp(b).unwrap_or(std::cmp::Ordering::Equal));
-        corners.dedup();
+    /// Times (s) at which a derivative of what is prescribed jumps, in their order, each with whose it is:
+    /// engines begin anew there.
+    pub fn corners(&self) -> Vec<(S, Owner)> {
+        let drives = self.model.drives().iter().enumerate();
+        let drives = drives.map(|(k, drive)| (Owner::Drive(k), &drive.course));
+        let loads = self.model.loads().iter().enumerate();
+        let loads = loads.filter_map(|(k, load)| Some((Owner::Load(k), load.course()?)));
+        let all = drives.chain(loads);
+        let mut corners: Vec<(S, Owner)> = all
+            .flat_map(|(owner, course)| course.corners().iter().map(move |time| (*time, owner)))
+            .collect();
+        corners.sort_by(|(a, _), (b, _)| a.partial_cmp(b).unwrap_or(std::cmp::Ordering::Equal));
         corners
     }
 

@@ -1,11 +1,12 @@
 //! What is told of a mechanism: positions to energies, in double precision.
 
-use super::layout::{Origin, Role};
+use super::layout::Role;
 use super::{
     BodyObservation, ClearanceObservation, EnergyObservation, JointObservation, Mechanism,
     Observation,
 };
 use crate::clearance::Mode;
+use crate::model::Owner;
 use crate::plane::{Vector, Wrench};
 use crate::scalar::Scalar;
 
@@ -91,7 +92,7 @@ impl<S: Scalar> Mechanism<S> {
             }
             None => {
                 let at = self.layout.constraints.iter();
-                let at = at.zip(&self.now.arms).find(|(row, _)| row.origin == Origin::Joint(index));
+                let at = at.zip(&self.now.arms).find(|(row, _)| row.owner == Owner::Joint(index));
                 at.map_or(Wrench::none(), |(row, arms)| {
                     let (slopes, lambda) = (&self.now.jacobian, &self.now.lambda);
                     row.constraint.on_second(arms, &slopes[row.range()], &lambda[row.range()])

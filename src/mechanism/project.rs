@@ -146,7 +146,7 @@ impl<S: Scalar> Mechanism<S> {
             error(*a).total_cmp(&error(*b))
         };
         let row = (0..self.layout.rows).max_by(worst).unwrap_or(0);
-        let joint = self.layout.key(&self.model, row).to_string();
+        let joint = self.layout.owner(row).key(self.model.names()).to_string();
         Err(Fault::Fatal(Box::new(OpenJoint { joint, off, time: self.now.time.to_f64() })))
     }
 

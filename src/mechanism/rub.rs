@@ -9,11 +9,11 @@
 //! unknowns, needs no more than its slopes.
 
 use super::Mechanism;
-use super::layout::{Layout, Origin, Role};
+use super::layout::{Layout, Role};
 use crate::dae::{Entries, Fault};
 use crate::linear::solve_square;
 use crate::load::{JointFriction, Load};
-use crate::model::Model;
+use crate::model::{Model, Owner};
 use crate::plane::{Motion, Pose, Vector, Wrench};
 use crate::scalar::Scalar;
 
@@ -72,7 +72,7 @@ pub(super) fn rubbings<S: Scalar>(model: &Model<S>, layout: &Layout<S>) -> Vec<R
         let mut driven = layout.driven.iter();
         let mut constraints = layout.constraints.iter();
         let driven = driven.position(|driven| driven.joint == friction.joint);
-        let constraint = constraints.position(|row| row.origin == Origin::Joint(friction.joint));
+        let constraint = constraints.position(|row| row.owner == Owner::Joint(friction.joint));
         let at = driven.map(Site::Driven).or(constraint.map(Site::Constraint))?;
         let name = model.names().joints[friction.joint].clone();
         Some(Rubbing { friction: *friction, at, name })

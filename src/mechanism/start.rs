@@ -21,12 +21,12 @@
 //! numbers mean something.
 
 use super::Mechanism;
-use super::layout::{Origin, Role, Row, key};
+use super::layout::{Role, Row};
 use crate::clearance::Mode;
 use crate::dae::{Fault, State, System};
 use crate::joint::{Blocks, Constraint, MOST_BODIES, MOST_ROWS, Revolute};
 use crate::linear::{self, Cascade, nearest};
-use crate::model::{Complaint, KeyPath, Start};
+use crate::model::{Complaint, KeyPath, Owner, Start};
 use crate::plane::Vector;
 use crate::scalar::Scalar;
 
@@ -258,7 +258,7 @@ impl<S: Scalar> Mechanism<S> {
             .map(|clearance| Row {
                 constraint: Constraint::Revolute(Revolute { pair: clearance.pair }),
                 first: 0,
-                origin: Origin::Joint(0),
+                owner: Owner::Joint(0),
             })
             .collect()
     }
@@ -503,7 +503,7 @@ impl<S: Scalar> Mechanism<S> {
             let off = off[0].hypot(off[1]).hypot(off[2]);
             if !(off <= allowed) {
                 complaints.push(Complaint {
-                    key: key(&self.model, row.origin),
+                    key: row.owner.key(self.model.names()),
                     message: format!(
                         "does not close: it is off by {off:.6e} m (rad) in the best assembly \
                          found; check the lengths and the poses under [start]"
@@ -556,7 +556,7 @@ impl<S: Scalar> Mechanism<S> {
                 let clearance = &self.model.clearances()[k];
                 let gap = self.now.gap(k, clearance);
                 (gap.depth > S::zero()).then(|| Complaint {
-                    key: key(&self.model, Origin::Joint(index)),
+                    key: Owner::Joint(index).key(self.model.names()),
                     message: format!(
                         "does not close: the journal is {:.6e} m from the bearing's centre in \
                          the best assembly found, the radial clearance is {:.6e} m; check the \
@@ -572,7 +572,7 @@ impl<S: Scalar> Mechanism<S> {
     fn assemble_velocities(&mut self, q: &[S]) -> Result<(Vec<S>, Solved), Vec<Complaint>> {
         self.factor().map_err(|singular| {
             vec![Complaint {
-                key: self.layout.key(&self.model, singular.row),
+                key: self.layout.owner(singular.row).key(self.model.names()),
                 message: "holds what the other joints hold already, or the mechanism starts in a \
                           singular position (a dead centre); remove the joint, or start elsewhere"
                     .into(),

@@ -28,7 +28,7 @@ impl<S: Scalar> Mechanism<S> {
         if self.now.poses.iter().any(|pose| !pose.cos.is_finite() || !pose.position.x.is_finite()) {
             return Fault::TryShorterStep("a coordinate is not finite".into());
         }
-        let joint = self.layout.key(&self.model, row).to_string();
+        let joint = self.layout.owner(row).key(self.model.names()).to_string();
         Fault::Fatal(Box::new(SingularPosition { joint, time: self.now.time.to_f64() }))
     }
 }

@@ -7,11 +7,13 @@
 mod check;
 mod complaint;
 mod description;
+mod owner;
 
 pub use crate::joint::GROUND;
 pub use check::{check, is_name};
 pub use complaint::*;
 pub use description::*;
+pub use owner::Owner;
 
 use crate::clearance::Clearance;
 use crate::contact::elastic::{self, Elastic, ElasticLaw};

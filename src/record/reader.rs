@@ -48,7 +48,7 @@ impl Table {
 }
 
 /// Datasets that results of older programs do not have.
-const LATER: [&str; 1] = ["contact_peak_penetration_time"];
+const LATER: [&str; 3] = ["contact_peak_penetration_time", "event_owner", "event_owner_index"];
 
 impl ResultFile {
     /// Opens a result file.
@@ -341,15 +341,24 @@ impl ResultFile {
 
     /// That an index or a flag is one of those there are.
     fn check_value(&self, dataset: &Dataset, value: f64) -> Result<(), Error> {
-        let (what, count) = match dataset.values {
+        let name = dataset.name;
+        let (what, least, count) = match dataset.values {
             Values::Real => return Ok(()),
-            Values::Index => ("clearance", self.length(Dimension::Clearance)),
-            Values::Flag(meanings) => ("kind", meanings.len()),
+            // whose it is stands beside it
+            Values::Index if name == "event_owner_index" => ("owner", 0.0, i32::MAX as usize),
+            Values::Index => {
+                let least = if name == "event_clearance" { -1.0 } else { 0.0 };
+                ("clearance", least, self.length(Dimension::Clearance))
+            }
+            Values::Flag(meanings) => {
+                let known = meanings.iter().any(|(flag, _)| f64::from(*flag) == value);
+                let told = || format!("{name} speaks of a kind {value}, there is none");
+                return if known { Ok(()) } else { Err(self.damaged(told())) };
+            }
         };
-        if value >= 0.0 && value < count as f64 {
+        if value >= least && value < count as f64 {
             return Ok(());
         }
-        let name = dataset.name;
         Err(self.damaged(format!("{name} speaks of a {what} {value}, there are {count}")))
     }
 

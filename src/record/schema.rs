@@ -3,6 +3,7 @@
 use crate::mechanism::{
     BodyObservation, ClearanceObservation, JointObservation, Measure, Observation,
 };
+use crate::model::Owner;
 use crate::run::{Contact, Event, EventKind, Peak, Revolution};
 
 /// Version of the layout; it grows when a name is dropped or changes its meaning.
@@ -83,8 +84,8 @@ pub enum Values {
     Real,
     /// 32-bit integer: an index.
     Index,
-    /// 8-bit integer; the meanings of 0, 1, … in order.
-    Flag(&'static [&'static str]),
+    /// 8-bit integer; its values in rising order, and what they mean.
+    Flag(&'static [(i8, &'static str)]),
 }
 
 /// Where a value stands in what is written: for the writer, and for the reader that puts it back.
@@ -321,7 +322,7 @@ const fn index(name: &'static str, long_name: &'static str, source: Source) -> D
 const fn flag(
     name: &'static str,
     long_name: &'static str,
-    meanings: &'static [&'static str],
+    meanings: &'static [(i8, &'static str)],
     source: Source,
 ) -> Dataset {
     dataset(name, "1", long_name, Values::Flag(meanings), source)
@@ -339,7 +340,7 @@ const fn extreme(
 }
 
 /// Every dataset but the index scales, in the order in which they stand in a file.
-pub static DATASETS: [Dataset; 74] = {
+pub static DATASETS: [Dataset; 76] = {
     use Drawn::{Extremes, Smooth};
     use Measure as M;
     use Quantity as Q;
@@ -441,7 +442,7 @@ pub static DATASETS: [Dataset; 74] = {
         flag(
             "in_contact",
             "whether the journal touches the bearing",
-            &["flight", "contact"],
+            &[(0, "flight"), (1, "contact")],
             Clearance(Place {
                 get: |c| if c.in_contact { 1.0 } else { 0.0 },
                 put: |c, value| c.in_contact = value != 0.0,
@@ -508,21 +509,46 @@ pub static DATASETS: [Dataset; 74] = {
         )
         .drawn(Extremes),
         real("event_time", "s", "time of the event", Event(at!(time))),
-        index("event_clearance", "index of the event's clearance", Event(at_index!(clearance))),
+        index(
+            "event_clearance",
+            "index of the event's clearance; -1 where it belongs to something else",
+            Event(Place {
+                get: |e| e.owner.clearance().map_or(-1.0, |k| k as f64),
+                put: |e, value| e.owner = Owner::Clearance(value.max(0.0) as usize),
+            }),
+        ),
         flag(
             "event_kind",
             "kind of the event",
             &EventKind::WORDS,
             Event(Place {
-                get: |e| f64::from(e.kind as u8),
-                put: |e, value| e.kind = EventKind::ALL[value as usize],
+                get: |e| f64::from(e.kind as i8),
+                put: |e, value| e.kind = EventKind::of_number(value as i8).unwrap_or_default(),
             }),
         ),
         real(
             "event_rate",
             "m/s",
-            "penetration rate at the event; slip velocity at a friction kink",
+            "penetration rate at the event; slip velocity at a friction kink; independent share of the \
+             constraints at a singular position",
             Event(at!(rate)),
+        ),
+        flag(
+            "event_owner",
+            "what the event belongs to",
+            &Owner::WORDS,
+            Event(Place {
+                get: |e| f64::from(e.owner.sort()),
+                put: |e, value| e.owner = Owner::of(value as i8, e.owner.index()),
+            }),
+        ),
+        index(
+            "event_owner_index",
+            "index of what the event belongs to among those of its sort",
+            Event(Place {
+                get: |e| e.owner.index() as f64,
+                put: |e, value| e.owner = Owner::of(e.owner.sort(), value as usize),
+            }),
         ),
         index(
             "contact_clearance",

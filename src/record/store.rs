@@ -391,9 +391,9 @@ fn create_dataset(
     written.attribute(&handle, "units", unit)?;
     written.attribute(&handle, "long_name", long_name)?;
     if let Values::Flag(meanings) = stored {
-        let values: Vec<i8> = (0..meanings.len() as i8).collect();
+        let (values, words): (Vec<i8>, Vec<&str>) = meanings.iter().copied().unzip();
         written.list(&handle, "flag_values", &values)?;
-        written.attribute(&handle, "flag_meanings", meanings.join(" "))?;
+        written.attribute(&handle, "flag_meanings", words.join(" "))?;
     }
     Ok(handle)
 }

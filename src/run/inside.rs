@@ -24,7 +24,7 @@ impl<S, E, R> Run<'_, S, E, R>
 where
     S: Scalar,
     E: Engine<S, System = Mechanism<S>>,
-    R: Recorder,
+    R: Recorder + ?Sized,
 {
     /// Takes the measures where the last step ended; the system stands evaluated there.
     #[inline]

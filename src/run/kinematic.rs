@@ -6,7 +6,8 @@
 
 use super::extremes::{Look, Parts, Tracker};
 use super::{
-    Checkpoint, Error, Progress, Reached, Recorder, RulingCounts, Schedule, Stretch, Watcher,
+    Checkpoint, Error, Event, EventKind, Progress, Reached, Recorder, RulingCounts, Schedule,
+    Stretch, Watcher,
 };
 use crate::dae::{Fault, Snapshot, State, System};
 use crate::halt;
@@ -38,7 +39,7 @@ fn gauss<S: Scalar>() -> [(S, S); 4] {
 ///
 /// # Errors
 /// See [`Error`]: a position that cannot be reached or is singular, or a recorder's.
-pub fn kinematic<S: Scalar, R: Recorder>(
+pub fn kinematic<S: Scalar, R: Recorder + ?Sized>(
     mechanism: &mut Mechanism<S>,
     schedule: &Schedule,
     stretch: &Stretch<'_, S>,
@@ -51,7 +52,7 @@ pub fn kinematic<S: Scalar, R: Recorder>(
     }
 }
 
-fn go<S: Scalar, R: Recorder>(
+fn go<S: Scalar, R: Recorder + ?Sized>(
     mechanism: &mut Mechanism<S>,
     schedule: &Schedule,
     stretch: &Stretch<'_, S>,
@@ -90,10 +91,17 @@ fn go<S: Scalar, R: Recorder>(
             let to = now.time + (time - now.time) * S::from_f64(1.0 / left);
             let to = if left > 1.0 { to } else { time };
             let fault = |source| Error::System { time: to.to_f64(), source };
-            for corner in corners.iter().filter(|corner| **corner < to) {
+            let begin = now.time;
+            for (corner, owner) in corners.iter().filter(|(corner, _)| *corner <= to) {
                 // the quadrature sees no jump
-                if *corner > now.time {
+                if *corner > now.time && *corner < to {
                     advance(mechanism, &mut now, *corner, &rule).map_err(fault)?;
+                }
+                if *corner > begin && *corner < schedule.duration() {
+                    let (time, kind) = (corner.to_f64(), EventKind::CourseChanges);
+                    let event = Event { time, owner: *owner, kind, rate: 0.0 };
+                    recorder.event(event).map_err(Error::Recorder)?;
+                    progress.events += 1;
                 }
             }
             advance(mechanism, &mut now, to, &rule).map_err(fault)?;
@@ -127,7 +135,7 @@ fn go<S: Scalar, R: Recorder>(
 }
 
 /// Follows the extremes to where the mechanism now stands; leaves it there.
-fn follow<S: Scalar, R: Recorder>(
+fn follow<S: Scalar, R: Recorder + ?Sized>(
     tracker: &mut Tracker,
     mechanism: &mut Mechanism<S>,
     now: &Snapshot<S>,

@@ -5,6 +5,7 @@
 //! that the engine returns is projected, never polished, and the new mode is latched from it.
 
 mod checkpoint;
+mod erased;
 mod extremes;
 mod inside;
 mod kinematic;
@@ -18,6 +19,7 @@ mod window;
 mod witness;
 
 pub use checkpoint::{Checkpoint, Checkpoints, NotACheckpoint, Reached, Stretch};
+pub(crate) use erased::{AnyRecorder, Erased, NotKept};
 pub use extremes::LEFT_OUT;
 pub use kinematic::{Assembled, TooFar, Undecided, kinematic};
 pub use recorder::*;
@@ -29,6 +31,7 @@ use crate::clearance::{Clearance, EventSlot, Mode};
 use crate::dae::{Advance, Direction, Engine, Fault, Snapshot, System};
 use crate::halt;
 use crate::mechanism::{Ledger, Mechanism};
+use crate::model::Owner;
 use crate::scalar::{Scalar, bits};
 use extremes::Tracker;
 use inside::End;
@@ -77,7 +80,9 @@ pub enum Error<E: std::error::Error + 'static, R: std::error::Error + 'static> {
     Singular {
         /// Where the run stood (s).
         time: f64,
-        /// Key of the joint.
+        /// What it is that the others hold already, nearly.
+        owner: Owner,
+        /// Its key.
         joint: String,
         /// What the others leave of what the joint holds: a share of the squares.
         left: f64,
@@ -167,7 +172,7 @@ pub type Watcher<'a> = &'a mut dyn FnMut(&Progress) -> ControlFlow<()>;
 type Outcome<T, S, E, R> = Result<T, Error<<E as Engine<S>>::Error, <R as Recorder>::Error>>;
 
 /// A run in progress.
-struct Run<'a, S: Scalar, E: Engine<S>, R> {
+struct Run<'a, S: Scalar, E: Engine<S>, R: ?Sized> {
     engine: &'a mut E,
     recorder: &'a mut R,
     schedule: &'a Schedule,
@@ -218,7 +223,7 @@ pub fn run<S, E, R>(
 where
     S: Scalar,
     E: Engine<S, System = Mechanism<S>>,
-    R: Recorder,
+    R: Recorder + ?Sized,
 {
     match stretch(engine, schedule, &Stretch::WHOLE, tolerance, recorder, watch)? {
         Reached::End(counts) => Ok(counts),
@@ -242,7 +247,7 @@ pub fn stretch<S, E, R>(
 where
     S: Scalar,
     E: Engine<S, System = Mechanism<S>>,
-    R: Recorder,
+    R: Recorder + ?Sized,
 {
     let start = engine.system().start().clone();
     let system = engine.system();
@@ -294,6 +299,13 @@ where
         },
         (going, _) => going,
     };
+    let going = match going {
+        Err(Error::Singular { time, owner, left, .. }) if !halt::is_asked() => {
+            let event = Event { time, owner, kind: EventKind::Singular, rate: left };
+            run.recorder.event(event).map_err(Error::Recorder).and(going)
+        }
+        going => going,
+    };
     // contacts still open and peaks not settled belong to what was simulated, however it ended
     let closing = run.close();
     // the last word, whether or not it asks to stop
@@ -313,7 +325,7 @@ impl<S, E, R> Run<'_, S, E, R>
 where
     S: Scalar,
     E: Engine<S, System = Mechanism<S>>,
-    R: Recorder,
+    R: Recorder + ?Sized,
 {
     fn go(&mut self, stretch: &Stretch<'_, S>, watch: Watcher<'_>) -> Outcome<(), S, E, R> {
         if stretch.from.is_none() {
@@ -324,11 +336,13 @@ where
         self.sample(false)?;
         self.check_depths()?;
         let end: S = stretch.until.unwrap_or_else(|| self.schedule.duration());
-        let corners = self.engine.system().corners();
+        let mut corners = self.engine.system().corners();
+        corners.retain(|(corner, _)| *corner < self.schedule.duration());
         while self.engine.now().time < end {
             let before = self.engine.now().time;
-            let corner = corners[corners.partition_point(|corner| *corner <= before)..].first();
-            let corner = corner.copied().filter(|corner| *corner < end);
+            let corner =
+                corners[corners.partition_point(|(corner, _)| *corner <= before)..].first();
+            let corner = corner.map(|(corner, _)| *corner).filter(|corner| *corner <= end);
             let until = corner.unwrap_or(end);
             let advance = self.engine.step(until).map_err(|source| self.stopped(source))?;
             if self.engine.now().time < before {
@@ -346,7 +360,10 @@ where
             self.check_depths()?;
             match advance {
                 Advance::Event => self.event()?,
-                Advance::Stepped if Some(self.engine.now().time) == corner => self.begin_anew()?,
+                Advance::Stepped if Some(self.engine.now().time) == corner => {
+                    let here = corners.iter().filter(|(time, _)| Some(*time) == corner);
+                    self.begin_anew(here.map(|(_, owner)| *owner))?;
+                }
                 Advance::Stepped if self.progress.steps.is_multiple_of(DRIFT_EVERY) => {
                     self.hold()?
                 }
@@ -468,8 +485,8 @@ where
         let now = self.engine.now().clone();
         let time = now.time.to_f64();
         match self.engine.system().weakest_joint(now.state()) {
-            Some((joint, left)) if left < SINGULAR => {
-                Error::Singular { time, joint, left, source: Some(source) }
+            Some((owner, left)) if left < SINGULAR => {
+                self.singular_position(owner, left, Some(source))
             }
             _ => Error::Engine { time, segment: self.segment, source },
         }
@@ -479,14 +496,24 @@ where
     fn check_singular(&mut self) -> Outcome<(), S, E, R> {
         let now = self.engine.now().clone();
         let weakest = self.engine.system().weakest_joint(now.state());
-        let Some((joint, left)) = weakest.filter(|(_, left)| *left < SINGULAR) else {
+        let Some((owner, left)) = weakest.filter(|(_, left)| *left < SINGULAR) else {
             self.singular = false;
             return Ok(());
         };
         match std::mem::replace(&mut self.singular, true) {
-            true => Err(Error::Singular { time: now.time.to_f64(), joint, left, source: None }),
+            true => Err(self.singular_position(owner, left, None)),
             false => Ok(()),
         }
+    }
+
+    fn singular_position(
+        &mut self,
+        owner: Owner,
+        left: f64,
+        source: Option<E::Error>,
+    ) -> Error<E::Error, R::Error> {
+        let joint = owner.key(self.engine.system().model().names()).to_string();
+        Error::Singular { time: self.engine.now().time.to_f64(), owner, joint, left, source }
     }
 
     fn restart(&mut self, at: &Snapshot<S>) -> Outcome<(), S, E, R> {
@@ -537,9 +564,12 @@ where
         Ok(())
     }
 
-    /// Restarts where a derivative of what is prescribed jumps.
-    fn begin_anew(&mut self) -> Outcome<(), S, E, R> {
+    /// Restarts where a derivative of what is prescribed jumps, of these owners.
+    fn begin_anew(&mut self, owners: impl Iterator<Item = Owner>) -> Outcome<(), S, E, R> {
         self.scratch.clone_from(self.engine.now());
+        for owner in owners {
+            self.tell_event(owner, EventKind::CourseChanges, 0.0)?;
+        }
         self.project()?;
         let state = self.scratch.clone();
         self.restart(&state)?;
@@ -597,7 +627,6 @@ where
             }
             EventSlot::Pull => (EventKind::Tension, rate),
         };
-        self.progress.events += 1;
         let time = self.scratch.time.to_f64();
         if let (EventKind::Tension, Some(touching)) = (kind, self.touching[clearance].as_mut()) {
             touching.pulled = true;
@@ -606,7 +635,13 @@ where
             let begins = self.witness.begins(clearance, rate.to_f64(), time);
             begins.map_err(Error::Contradiction)?;
         }
-        let event = Event { time, clearance, kind, rate: rate.to_f64() };
+        self.tell_event(Owner::Clearance(clearance), kind, rate.to_f64())
+    }
+
+    /// Records an event at the time in `scratch`.
+    fn tell_event(&mut self, owner: Owner, kind: EventKind, rate: f64) -> Outcome<(), S, E, R> {
+        self.progress.events += 1;
+        let event = Event { time: self.scratch.time.to_f64(), owner, kind, rate };
         self.recorder.event(event).map_err(Error::Recorder)
     }
 

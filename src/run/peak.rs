@@ -42,7 +42,7 @@ impl<S, E, R> Run<'_, S, E, R>
 where
     S: Scalar,
     E: Engine<S, System = Mechanism<S>>,
-    R: Recorder,
+    R: Recorder + ?Sized,
 {
     /// Follows every open contact through the last step: rates at its end, maxima inside it.
     /// Marks what adaptive sampling must not miss.

@@ -1,13 +1,14 @@
 //! What a run tells whoever keeps it.
 
 use crate::mechanism::{Measure, Measures, Observation};
+use crate::model::Owner;
 use crate::scalar::bits;
 use serde::{Deserialize, Serialize};
 use std::error::Error;
 use std::ops::ControlFlow;
 
 /// Kinds of event; the number is that of result files.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
 pub enum EventKind {
     /// A contact begins.
     #[default]
@@ -18,27 +19,50 @@ pub enum EventKind {
     FrictionKink = 2,
     /// The contact law begins to pull, or ends it.
     Tension = 3,
+    /// A derivative of what is prescribed jumps.
+    CourseChanges = 6,
+    /// The mechanism comes to a singular position.
+    Singular = 7,
+}
+
+/// What an event does to the run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Effect {
+    /// Its owner goes over to another mode, and the engine begins anew.
+    SwitchesMode,
+    /// The engine begins anew from the same state.
+    BeginsAnew,
+    /// The run ends there.
+    Stops,
 }
 
 impl EventKind {
     /// All, in the order of their numbers.
-    pub const ALL: [EventKind; 4] = [
+    pub const ALL: [EventKind; 6] = [
         EventKind::ContactBegins,
         EventKind::ContactEnds,
         EventKind::FrictionKink,
         EventKind::Tension,
+        EventKind::CourseChanges,
+        EventKind::Singular,
     ];
 
-    /// Their names in result files and tables, in that order.
-    pub const WORDS: [&'static str; 4] = {
-        let mut words = [""; 4];
-        let mut number = 0;
-        while number < words.len() {
-            words[number] = EventKind::ALL[number].word();
-            number += 1;
+    /// Their numbers and names in result files and tables, in that order.
+    pub const WORDS: [(i8, &'static str); EventKind::ALL.len()] = {
+        let mut words = [(0, ""); EventKind::ALL.len()];
+        let mut place = 0;
+        while place < words.len() {
+            let kind = EventKind::ALL[place];
+            words[place] = (kind as i8, kind.word());
+            place += 1;
         }
         words
     };
+
+    /// That of a number in result files, if there is one.
+    pub fn of_number(number: i8) -> Option<EventKind> {
+        EventKind::ALL.into_iter().find(|kind| *kind as i8 == number)
+    }
 
     /// Its name in result files and tables.
     pub const fn word(self) -> &'static str {
@@ -47,6 +71,8 @@ impl EventKind {
             EventKind::ContactEnds => "contact_ends",
             EventKind::FrictionKink => "friction_kink",
             EventKind::Tension => "tension_begins_or_ends",
+            EventKind::CourseChanges => "course_changes",
+            EventKind::Singular => "singular_position",
         }
     }
 
@@ -57,6 +83,20 @@ impl EventKind {
             EventKind::ContactEnds => "a contact ends",
             EventKind::FrictionKink => "the slip passes an edge of friction",
             EventKind::Tension => "tension begins or ends",
+            EventKind::CourseChanges => "a derivative of what is prescribed jumps",
+            EventKind::Singular => "the mechanism comes to a singular position",
+        }
+    }
+
+    /// What it does to the run.
+    pub const fn effect(self) -> Effect {
+        match self {
+            EventKind::ContactBegins
+            | EventKind::ContactEnds
+            | EventKind::FrictionKink
+            | EventKind::Tension => Effect::SwitchesMode,
+            EventKind::CourseChanges => Effect::BeginsAnew,
+            EventKind::Singular => Effect::Stops,
         }
     }
 }
@@ -66,11 +106,12 @@ impl EventKind {
 pub struct Event {
     /// Time (s).
     pub time: f64,
-    /// Index of the clearance.
-    pub clearance: usize,
+    /// What it belongs to.
+    pub owner: Owner,
     /// What happened.
     pub kind: EventKind,
-    /// Penetration rate (m/s), or the slip velocity (m/s) at a friction kink.
+    /// Penetration rate (m/s); the slip velocity (m/s) at a friction kink; 0 where a course changes; at a
+    /// singular position the share that its owner's constraints do not depend on the others.
     pub rate: f64,
 }
 

@@ -25,7 +25,7 @@ impl<S, E, R> Run<'_, S, E, R>
 where
     S: Scalar,
     E: Engine<S, System = Mechanism<S>>,
-    R: Recorder,
+    R: Recorder + ?Sized,
 {
     /// Records what is due up to now; `at_event` says whether the step ended at an event.
     pub(super) fn sample(&mut self, at_event: bool) -> Outcome<(), S, E, R> {

@@ -6,6 +6,7 @@ use freeplay::case::{Case, Changes};
 use freeplay::certify::{self, Error, Reference, Stage};
 use freeplay::digits::digits;
 use freeplay::mechanism::Observation;
+use freeplay::model::Owner;
 use freeplay::run::{EventKind, Progress};
 use freeplay::scalar::{F256, Scalar};
 use freeplay::simulate::Simulation;
@@ -211,7 +212,8 @@ impl Verdict {
     fn hold_events(&mut self, truth: &[Event], reference: &Reference, until: f64) {
         let found = &reference.trajectory.events;
         let clearances = truth.iter().map(|event| event.clearance);
-        let clearances = clearances.chain(found.iter().map(|event| event.clearance)).max();
+        let clearances =
+            clearances.chain(found.iter().filter_map(|event| event.owner.clearance())).max();
         for clearance in 0..=clearances.unwrap_or(0) {
             // an event on the end itself may be on either side of it
             let edge = until * (1.0 - LATE);
@@ -224,7 +226,8 @@ impl Verdict {
             truth.sort_by(|a, b| a.1.total_cmp(&b.1));
             let found: Vec<(EventKind, f64, f64)> = (found.iter())
                 .zip(&reference.event_times_wrong)
-                .filter(|(event, _)| event.clearance == clearance && event.time <= until)
+                .filter(|(event, _)| event.owner == Owner::Clearance(clearance))
+                .filter(|(event, _)| event.time <= until)
                 .map(|(event, wrong)| (event.kind, event.time, *wrong))
                 .collect();
             self.judged += truth.len();

@@ -6,6 +6,7 @@ use freeplay::mechanism::{
     BodyObservation, ClearanceObservation, EnergyObservation, JointObservation, Measure, Measures,
     Observation,
 };
+use freeplay::model::Owner;
 use freeplay::record::{Attribute, Ending, Header, Outcome, Writer};
 use freeplay::run::{Contact, Event, EventKind, Extremum, Peak, Recorder, Revolution};
 use std::path::{Path, PathBuf};
@@ -83,16 +84,18 @@ impl Recorded {
     }
 
     fn add_events(&mut self, events: usize, numbers: &mut Numbers) {
-        let kinds = [
-            EventKind::ContactBegins,
-            EventKind::ContactEnds,
-            EventKind::FrictionKink,
-            EventKind::Tension,
-        ];
+        let kinds = EventKind::ALL;
         for k in 0..events {
             let clearance = k % self.header.clearances.len();
             let (time, rate) = (numbers.next(), numbers.next());
-            self.events.push(Event { time, clearance, kind: kinds[k % 4], rate });
+            let kind = kinds[k % kinds.len()];
+            let owner = match kind {
+                EventKind::CourseChanges if k % 4 == 0 => Owner::Load(k),
+                EventKind::CourseChanges => Owner::Drive(0),
+                EventKind::Singular => Owner::Joint(0),
+                _ => Owner::Clearance(clearance),
+            };
+            self.events.push(Event { time, owner, kind, rate });
             self.peaks.push(Peak { time: numbers.next(), clearance, force: numbers.next() });
             self.contacts.push(Contact {
                 clearance,
@@ -255,9 +258,11 @@ impl Recorded {
         let peak = |name, unit, value| list("peak", &self.peaks, name, unit, value);
         vec![
             event("event_time", "s", |e| e.time),
-            event("event_clearance", "1", |e| e.clearance as f64),
+            event("event_clearance", "1", |e| e.owner.clearance().map_or(-1.0, |k| k as f64)),
             event("event_kind", "1", |e| f64::from(e.kind as u8)),
             event("event_rate", "m/s", |e| e.rate),
+            event("event_owner", "1", |e| f64::from(e.owner.sort())),
+            event("event_owner_index", "1", |e| e.owner.index() as f64),
             contact("contact_clearance", "1", |c| c.clearance as f64),
             contact("contact_begin", "s", |c| c.begin),
             contact("contact_end", "s", |c| c.end),
