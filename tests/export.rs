@@ -33,34 +33,47 @@ fn number(value: f64) -> Cell {
     Cell::Number(if value.is_nan() { f64::NAN } else { value }.to_bits())
 }
 
+/// Kinds of event by their numbers; two are not used.
+const KINDS: [&str; 8] = [
+    "contact_begins",
+    "contact_ends",
+    "friction_kink",
+    "tension_begins_or_ends",
+    "",
+    "",
+    "course_changes",
+    "singular_position",
+];
+
 /// What a table must hold, from the datasets one by one.
 fn expected(file: &ResultFile, table: TableName) -> Table {
-    let (names, kinds): (Vec<String>, &[&str]) = match table {
-        TableName::Samples => (file.columns(), &[]),
-        TableName::Events => (
-            words("event_time event_clearance event_kind event_rate"),
-            &["contact_begins", "contact_ends", "friction_kink", "tension_begins_or_ends"],
+    let names: Vec<String> = match table {
+        TableName::Samples => file.columns(),
+        TableName::Events => words(
+            "event_time event_clearance event_kind event_rate event_owner event_owner_index",
         ),
-        TableName::Contacts => (
-            words(
-                "contact_clearance contact_begin contact_end contact_impact_rate \
-                 contact_peak_penetration contact_peak_penetration_time contact_peak_force \
-                 contact_peak_time contact_dissipated",
-            ),
-            &[],
+        TableName::Contacts => words(
+            "contact_clearance contact_begin contact_end contact_impact_rate \
+             contact_peak_penetration contact_peak_penetration_time contact_peak_force \
+             contact_peak_time contact_dissipated",
         ),
-        TableName::Peaks => (words("peak_time peak_clearance peak_force"), &[]),
+        TableName::Peaks => words("peak_time peak_clearance peak_force"),
     };
+    let of = |words: &[&str], value: f64| Cell::Word(words[value as usize].to_owned());
     let columns: Vec<Vec<Cell>> = names
         .iter()
         .map(|name| {
             let values = file.column(name).unwrap().into_iter();
             match name.as_str() {
-                "event_kind" => {
-                    values.map(|value| Cell::Word(kinds[value as usize].to_owned())).collect()
-                }
+                "event_kind" => values.map(|value| of(&KINDS, value)).collect(),
+                "event_owner" => values
+                    .map(|value| of(&["clearance", "drive", "load", "joint"], value))
+                    .collect(),
                 name if name.ends_with("_clearance") => values
-                    .map(|value| Cell::Word(file.clearances()[value as usize].clone()))
+                    .map(|value| match value {
+                        -1.0 => Cell::Word(String::new()),
+                        value => Cell::Word(file.clearances()[value as usize].clone()),
+                    })
                     .collect(),
                 _ => values.map(number).collect(),
             }

@@ -176,7 +176,8 @@ fn ncdump_shows_the_dimensions_and_units_of_everything() {
         });
         for Expected { name, dimensions, unit, .. } in trial.run.expected() {
             let kind = match name {
-                "in_contact" | "event_kind" => "byte",
+                "in_contact" | "event_kind" | "event_owner" => "byte",
+                "event_owner_index" => "int",
                 _ if name.ends_with("_clearance") => "int",
                 _ => "double",
             };
