@@ -510,6 +510,7 @@ pub fn header(case: &Case, mechanism: &Mechanism<f64>, started_utc: String) -> H
         joints: names.joints,
         clearances: names.clearances,
         drives: names.drives,
+        points: names.points,
         sundials_version: ida::sundials_version(),
         started_utc,
         samples: match case.plan.checkpoint_interval {

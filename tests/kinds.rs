@@ -911,3 +911,153 @@ fn journals_that_start_closed_lie_where_the_ideal_mechanism_presses_them() {
         assert!(error.to_string().contains(told), "{error}");
     }
 }
+
+/// A slider-crank with a point beside its rod's line, and what is observed of it.
+const OBSERVED: [&str; 2] = [
+    "bodies.rod.points.P=[0.03, 0.02]",
+    "observe.points=[\"rod.P\", \"rod.A\", \"slider.B\", \"ground.O\"]",
+];
+
+/// Position, velocity and acceleration of rod.P: at 0.09 m along the rod from the crank's pin, 0.02 m
+/// beside it.
+fn beside_the_rod(t: f64) -> [[f64; 2]; 3] {
+    let (r, l, w) = (0.05, 0.12, 5000.0 * PI / 30.0);
+    let (sin, cos) = (w * t).sin_cos();
+    // l sin φ = −r sin ωt, and its derivatives
+    let (s, c) = ((-r / l * sin), (1.0 - (r / l * sin).powi(2)).sqrt());
+    let rate = -r / l * w * cos / c;
+    let bend = (r / l * w * w * sin + rate * rate * s) / c;
+    let arm = [c * 0.09 - s * 0.02, s * 0.09 + c * 0.02];
+    [
+        [r * cos + arm[0], r * sin + arm[1]],
+        [-r * w * sin - rate * arm[1], r * w * cos + rate * arm[0]],
+        [
+            -r * w * w * cos - bend * arm[1] - rate * rate * arm[0],
+            -r * w * w * sin + bend * arm[0] - rate * rate * arm[1],
+        ],
+    ]
+}
+
+#[test]
+fn observed_points_of_a_slider_crank_move_by_the_closed_form() {
+    let kept = simulate(&case("tests/kinds/slider-crank.toml", &OBSERVED));
+    let w = 5000.0 * PI / 30.0;
+    for sample in &kept.samples {
+        let [beside, pin, slider, ground] = *sample.points else { panic!("four points") };
+        let of = |point: freeplay::mechanism::PointObservation| {
+            [point.position, point.velocity, point.acceleration]
+        };
+        let size = [0.1, 0.1 * w, 0.1 * w * w];
+        for ((found, exact), size) in
+            of(beside).into_iter().zip(beside_the_rod(sample.time)).zip(size)
+        {
+            for k in 0..2 {
+                let off = (found[k] - exact[k]).abs();
+                assert!(off <= 1e-13 * size, "{} s: {found:?}, not {exact:?}", sample.time);
+            }
+        }
+        // the rod's end of the crank's pin is the crank's
+        let (sin, cos) = (w * sample.time).sin_cos();
+        let exact = [0.05 * cos, 0.05 * sin];
+        assert!((0..2).all(|k| (pin.position[k] - exact[k]).abs() <= 1e-14));
+        assert!((0..2).all(|k| (pin.acceleration[k] + w * w * exact[k]).abs() <= 1e-13 * size[2]));
+        // a point that is the mass centre moves as that
+        let body = body(sample, 2);
+        assert_eq!(of(slider), [body.position, body.velocity, body.acceleration]);
+        assert_eq!(of(ground), [[0.0; 2]; 3]);
+    }
+}
+
+#[test]
+fn observed_velocities_and_accelerations_are_the_derivatives_of_positions_on_both_engines() {
+    let points = "observe.points=[\"rod.P\"]";
+    let [pin, free] = ["bodies.rod.points.P=[0.03, 0.02]", "run.sample_interval=1e-6"];
+    for engine in ENGINES {
+        let set = [engine, points, pin, free, "run.duration=2e-4"];
+        let kept = simulate(&case("tests/kinds/slider-crank-wrist-pin.toml", &set));
+        let middle = |k: usize| kept.samples.get(k - 1..k + 2);
+        let rows = (1..kept.samples.len()).filter_map(middle);
+        let mut looked_at = 0;
+        for rows in rows.filter(|rows| rows.iter().all(|row| !row.clearances[0].in_contact)) {
+            let span = rows[2].time - rows[0].time;
+            let slope = |of: fn(&freeplay::mechanism::PointObservation) -> [f64; 2], k: usize| {
+                (of(&rows[2].points[0])[k] - of(&rows[0].points[0])[k]) / span
+            };
+            let (w, h) = (5000.0 * PI / 30.0, 0.5 * span);
+            // h²/6 times a third derivative, which is ω³ r and as many harmonics, and rounding
+            let allowed = 10.0 * h * h * w.powi(3) * 0.1 + 1e-16 / h;
+            for k in 0..2 {
+                let point = &rows[1].points[0];
+                let [v, a] = [slope(|p| p.position, k), slope(|p| p.velocity, k)];
+                assert!((v - point.velocity[k]).abs() <= allowed, "{engine} {v} {point:?}");
+                let off = (a - point.acceleration[k]).abs();
+                assert!(off <= allowed * w * 10.0 + 1e-14 / h, "{engine} {a} {point:?} {off:e}");
+            }
+            looked_at += 1;
+        }
+        assert!(looked_at > 20, "{looked_at} rows in flight");
+    }
+}
+
+#[test]
+fn observed_points_stand_in_files_tables_and_comparisons() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = |name: &str, set: &[&str]| {
+        let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_freeplay"));
+        command.args(["run", "tests/kinds/slider-crank.toml", "-o"]).arg(folder.path().join(name));
+        set.iter().for_each(|set| drop(command.args(["--set", set])));
+        let output = command.current_dir(root()).output().unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        freeplay::record::ResultFile::open(&folder.path().join(name)).unwrap()
+    };
+    let says = |arguments: &[&str]| {
+        let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_freeplay"));
+        let output = command.args(arguments).current_dir(folder.path()).output().unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        String::from_utf8(output.stdout).unwrap()
+    };
+    let plain = run("plain.h5", &[]);
+    assert!(plain.points().is_empty() && plain.dataset("point_position_x").is_err());
+    assert!(!says(&["info", "plain.h5"]).contains("point"));
+    let observed = run("observed.h5", &OBSERVED);
+    assert_eq!(observed.points(), ["rod.P", "rod.A", "slider.B", "ground.O"]);
+    let times = observed.times().unwrap();
+    let column = observed.column("point_acceleration_y.rod.P").unwrap();
+    let exact = |time: f64| beside_the_rod(time)[2][1];
+    assert!(times.iter().zip(&column).all(|(t, a)| (a - exact(*t)).abs() <= 1e-13 * 3e4));
+    // what is read back is what was told
+    let samples = observed.observations(0..times.len()).unwrap();
+    assert!(samples.iter().zip(&column).all(|(row, a)| row.points[0].acceleration[1] == *a));
+    let table = says(&["export", "observed.h5", "-o", "table.csv"]);
+    assert!(table.contains("table.csv"), "{table}");
+    let table = std::fs::read_to_string(folder.path().join("table.csv")).unwrap();
+    assert!(table.contains("point_velocity_x.rod.P"), "{}", table.lines().next().unwrap());
+    let told = says(&["compare", "observed.h5", "observed.h5"]);
+    assert!(told.contains("velocity of point"), "{told}");
+    // a comparison with a run that observes nothing, or of a table of points alone
+    says(&["compare", "plain.h5", "observed.h5", "--require-digits", "15"]);
+    let theirs: String = times.iter().map(|t| format!("{t:e},{:e}\n", beside_the_rod(*t)[0][0])).collect();
+    std::fs::write(folder.path().join("theirs.csv"), format!("t,x\n{theirs}")).unwrap();
+    let map = "x=point_position_x.rod.P";
+    says(&["compare", "theirs.csv", "observed.h5", "--map", map, "--require-digits", "12"]);
+}
+
+#[test]
+fn points_that_cannot_be_observed_are_told_with_their_key() {
+    for (points, word) in [
+        ("[\"rod.Q\"]", "has no point"),
+        ("[\"rood.A\"]", "did you mean \"rod\""),
+        ("[\"rod\"]", "body.point"),
+        ("[\"rod.A\", \"rod.A\"]", "twice"),
+        ("\"rod.A\"", "an array of strings"),
+    ] {
+        let text = std::fs::read_to_string(root().join("tests/kinds/slider-crank.toml")).unwrap();
+        let changes = freeplay::case::Changes {
+            set: vec![format!("observe.points={points}").parse().unwrap()],
+            ideal: false,
+        };
+        let path = std::path::Path::new("case.toml");
+        let error = freeplay::case::Case::from_text(path, &text, &changes).unwrap_err().to_string();
+        assert!(error.contains(word) && error.contains("observe.points"), "{points}: {error}");
+    }
+}

@@ -10,14 +10,19 @@ use crate::model::{
     Tension,
 };
 use crate::parameter::{Kind, Values};
+use crate::scalar::Decimal;
 use crate::{course, friction, joint, load};
 
 const TENSIONS: [(&str, Tension); 2] = [("keep", Tension::Keep), ("cut", Tension::Cut)];
 
 /// The mechanism that the root of a case describes.
 pub(super) fn description(root: &mut TableReader) -> Description {
-    let starts = |keys: &mut TableReader| (journals(keys), keys.other_tables(start));
-    let (journals, start) = root.optional_table("start", starts).unwrap_or_default();
+    let starts = |keys: &mut TableReader| {
+        let given = (journals(keys), clock(keys), contacts(keys));
+        (given, keys.other_tables(start))
+    };
+    let ((journals, clock, contacts), start) =
+        root.optional_table("start", starts).unwrap_or_default();
     Description {
         ground: root.optional_table("ground", points).unwrap_or_default(),
         bodies: root.named_tables("bodies", body),
@@ -26,6 +31,9 @@ pub(super) fn description(root: &mut TableReader) -> Description {
         loads: root.named_tables("loads", load).into_iter().flatten().collect(),
         start,
         journals,
+        clock,
+        contacts,
+        observed: root.optional_table("observe", observed).unwrap_or_default(),
     }
 }
 
@@ -36,6 +44,26 @@ fn journals(keys: &mut TableReader) -> Journals {
     }
     let flag = |closed| if closed { Journals::Touching } else { Journals::Centred };
     keys.flag_or_choice("closed", &[("pressed", Journals::Pressed)], flag).unwrap_or_default()
+}
+
+/// The time of courses at t = 0. A table of that name is the start of a body, here and below.
+fn clock(keys: &mut TableReader) -> Option<Decimal> {
+    if keys.has_table("clock") { None } else { keys.optional("clock", "s") }
+}
+
+/// Contacts that the start is in.
+fn contacts(keys: &mut TableReader) -> Vec<(String, Decimal)> {
+    if keys.has_table("contact") {
+        return Vec::new();
+    }
+    let contact =
+        |keys: &mut TableReader| (keys.required("joint", ""), keys.required("impact_rate", "m/s"));
+    keys.list_of_tables("contact", contact)
+}
+
+/// The points that are observed.
+fn observed(keys: &mut TableReader) -> Vec<String> {
+    keys.required("points", "")
 }
 
 /// The points of a body or of the ground.

@@ -193,6 +193,7 @@ pub fn tables() -> String {
     kinds(&mut text, "Courses: values that change with time", &defs["course"], course::KINDS);
     table(&mut text, "Start: `[start]`", "", &schema["properties"]["start"]);
     table(&mut text, "Start of a body: `NAME = { … }` in `[start]`", "", &defs["start"]);
+    table(&mut text, "Observers: `[observe]`", "", &schema["properties"]["observe"]);
     table(&mut text, "Run: `[run]`", "", &schema["properties"]["run"]);
     table(&mut text, "Windows of samples: `[[run.window]]`", "", &defs["window"]);
     table(&mut text, "Solver: `[solver]`", "", &schema["properties"]["solver"]);
@@ -285,7 +286,9 @@ fn takes(value: &Value) -> String {
         Some("number") => format!("number{}", limits(value)),
         Some("boolean") => "`true` or `false`".into(),
         Some("array") if value["items"]["$ref"].is_string() => "tables".into(),
-        Some("array") if value["maxItems"].is_null() => "numbers".into(),
+        Some("array") if value["maxItems"].is_null() => {
+            format!("{}s", value["items"]["type"].as_str().unwrap_or("value"))
+        }
         Some("array") => format!("two {}s", value["items"]["type"].as_str().unwrap_or("value")),
         Some("object") => "table".into(),
         other => other.unwrap_or_default().to_owned(),

@@ -117,6 +117,18 @@ impl FromItem for String {
     }
 }
 
+impl FromItem for Vec<String> {
+    const EXPECTED: &'static str = "an array of strings";
+
+    fn from_item(item: &Item) -> Option<Self> {
+        item.as_array()?.iter().map(|each| each.as_str().map(str::to_owned)).collect()
+    }
+
+    fn placeholder() -> Self {
+        Vec::new()
+    }
+}
+
 impl FromItem for [String; 2] {
     const EXPECTED: &'static str = "two points [\"body.point\", \"body.point\"]";
 

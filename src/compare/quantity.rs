@@ -19,12 +19,14 @@ pub enum Part {
 
 impl Quantity {
     /// All, in the order in which they are told.
-    pub const ALL: [Quantity; 8] = [
+    pub const ALL: [Quantity; 10] = [
         Quantity::Angle,
         Quantity::AngularRate,
         Quantity::Velocity,
         Quantity::Clearance,
         Quantity::Position,
+        Quantity::PointPosition,
+        Quantity::PointVelocity,
         Quantity::Force,
         Quantity::Torque,
         Quantity::Moment,
@@ -41,6 +43,8 @@ impl Quantity {
             Quantity::Force => "force",
             Quantity::Torque => "torque",
             Quantity::Moment => "moment",
+            Quantity::PointPosition => "point_position",
+            Quantity::PointVelocity => "point_velocity",
         }
     }
 
@@ -48,6 +52,8 @@ impl Quantity {
     pub const fn title(self) -> &'static str {
         match self {
             Quantity::AngularRate => "angular rate",
+            Quantity::PointPosition => "position of point",
+            Quantity::PointVelocity => "velocity of point",
             other => other.name(),
         }
     }
@@ -57,8 +63,8 @@ impl Quantity {
         match self {
             Quantity::Angle => "rad",
             Quantity::AngularRate => "rad/s",
-            Quantity::Velocity => "m/s",
-            Quantity::Clearance | Quantity::Position => "m",
+            Quantity::Velocity | Quantity::PointVelocity => "m/s",
+            Quantity::Clearance | Quantity::Position | Quantity::PointPosition => "m",
             Quantity::Force => "N",
             Quantity::Torque | Quantity::Moment => "N m",
         }
@@ -70,7 +76,7 @@ impl Quantity {
             Quantity::Angle | Quantity::AngularRate | Quantity::Velocity | Quantity::Clearance => {
                 Part::State
             }
-            Quantity::Position => Part::Derived,
+            Quantity::Position | Quantity::PointPosition | Quantity::PointVelocity => Part::Derived,
             Quantity::Force | Quantity::Torque | Quantity::Moment => Part::Forces,
         }
     }
@@ -115,6 +121,7 @@ impl Parts {
             joints: file.joints().to_vec(),
             clearances: file.clearances().to_vec(),
             drives: file.drives().to_vec(),
+            points: file.points().to_vec(),
         })
     }
 
@@ -125,6 +132,7 @@ impl Parts {
             Dimension::Joint => Some(&self.0.joints),
             Dimension::Clearance => Some(&self.0.clearances),
             Dimension::Drive => Some(&self.0.drives),
+            Dimension::Point => Some(&self.0.points),
             Dimension::Time
             | Dimension::Event
             | Dimension::Contact
@@ -183,6 +191,7 @@ pub(super) mod tests {
             joints: names(&["A0", "A", "B", "B0"]),
             clearances: names(&["A"]),
             drives: names(&["crank"]),
+            points: Vec::new(),
         })
     }
 

@@ -12,14 +12,15 @@ pub fn measure(columns: &[Column], values: &[Vec<f64>], sizes: &Sizes) -> Scales
     let of = |quantity: Quantity| {
         columns.iter().zip(values).filter(move |(column, _)| column.quantity() == Some(quantity))
     };
-    let extents = of(Quantity::Position).map(|(_, values)| extent(values));
     let largest = Largest {
         angular_velocity: largest_magnitude(of(Quantity::AngularRate)),
         velocity: largest_magnitude(of(Quantity::Velocity)),
-        position: extents.fold(0.0, f64::max),
+        position: largest_extent(of(Quantity::Position)),
         force: largest_magnitude(of(Quantity::Force)),
         torque: largest_magnitude(of(Quantity::Torque)),
         moment: largest_magnitude(of(Quantity::Moment)),
+        point_position: largest_extent(of(Quantity::PointPosition)),
+        point_velocity: largest_magnitude(of(Quantity::PointVelocity)),
     };
     Scales::new(sizes, &largest)
 }
@@ -50,6 +51,8 @@ fn scale_of(scales: &mut Scales, quantity: Quantity) -> Option<&mut f64> {
         Quantity::Force => Some(&mut scales.force),
         Quantity::Torque => Some(&mut scales.torque),
         Quantity::Moment => Some(&mut scales.moment),
+        Quantity::PointPosition => Some(&mut scales.point_position),
+        Quantity::PointVelocity => Some(&mut scales.point_velocity),
     }
 }
 
@@ -65,9 +68,16 @@ impl Scales {
             Some(Quantity::Force) => self.force,
             Some(Quantity::Torque) => self.torque,
             Some(Quantity::Moment) => self.moment,
+            Some(Quantity::PointPosition) => self.point_position,
+            Some(Quantity::PointVelocity) => self.point_velocity,
             None => f64::NAN,
         }
     }
+}
+
+/// The largest extent of any column.
+fn largest_extent<'a>(columns: impl Iterator<Item = (&'a Column, &'a Vec<f64>)>) -> f64 {
+    columns.map(|(_, values)| extent(values)).fold(0.0, f64::max)
 }
 
 /// Distance of the largest from the smallest value, what is no number left out.

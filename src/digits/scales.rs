@@ -8,6 +8,7 @@
 //! positions         the largest extent of the path of any mass centre
 //! forces            the largest of any joint or clearance
 //! torques, moments  the largest
+//! points observed   the largest extent of the path of any, the largest speed of any
 //! ```
 //! None is less than a thousandth of what is characteristic of the mechanism: with its mass m, its
 //! length l and its rate ω these are ω, ω l, l, m l ω² and m l² ω². Where a quantity is zero but for
@@ -47,6 +48,10 @@ pub struct Largest {
     pub torque: f64,
     /// Moment of any joint (N m).
     pub moment: f64,
+    /// Extent of the path of any point that is observed, in x or y (m).
+    pub point_position: f64,
+    /// Speed of any of these (m/s).
+    pub point_velocity: f64,
 }
 
 /// Sizes that errors are measured by.
@@ -68,6 +73,10 @@ pub struct Scales {
     pub torque: f64,
     /// Of moments (N m).
     pub moment: f64,
+    /// Of positions of points that are observed (m).
+    pub point_position: f64,
+    /// Of their velocities (m/s).
+    pub point_velocity: f64,
 }
 
 impl Sizes {
@@ -94,16 +103,23 @@ impl Largest {
         let bodies = || samples.iter().flat_map(|sample| &sample.bodies);
         let joints = || samples.iter().flat_map(|sample| &sample.joints);
         let clearances = || samples.iter().flat_map(|sample| &sample.clearances);
+        let points = samples.iter().flat_map(|sample| &sample.points);
         let torques = samples.iter().flat_map(|sample| &sample.drive_torques);
         let pressed = clearances().map(|c| c.normal_force.hypot(c.tangential_force));
         let joined = joints().map(|joint| joint.force[0].hypot(joint.force[1]));
         Largest {
             angular_velocity: largest(&mut bodies().map(|body| body.angular_velocity.abs())),
             velocity: largest(&mut bodies().map(|b| b.velocity[0].hypot(b.velocity[1]))),
-            position: largest_extent(samples),
+            position: largest_extent(samples, |sample| {
+                sample.bodies.iter().map(|body| body.position).collect()
+            }),
             force: largest(&mut joined.chain(pressed)),
             torque: largest(&mut torques.map(|torque| torque.abs())),
             moment: largest(&mut joints().map(|joint| joint.moment.abs())),
+            point_position: largest_extent(samples, |sample| {
+                sample.points.iter().map(|point| point.position).collect()
+            }),
+            point_velocity: largest(&mut points.map(|p| p.velocity[0].hypot(p.velocity[1]))),
         }
     }
 }
@@ -119,22 +135,25 @@ impl Largest {
             force: self.force.max(other.force),
             torque: self.torque.max(other.torque),
             moment: self.moment.max(other.moment),
+            point_position: self.point_position.max(other.point_position),
+            point_velocity: self.point_velocity.max(other.point_velocity),
         }
     }
 }
 
-/// Largest extent of the path of any mass centre, in x or y (m).
-fn largest_extent(samples: &[Observation]) -> f64 {
-    let bodies = samples.first().map_or(0, |sample| sample.bodies.len());
-    let extent = |body: usize, c: usize| {
-        let places = samples.iter().map(|sample| sample.bodies[body].position[c]);
-        let (low, high) = places.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
-            (f64::min(low, x), f64::max(high, x))
-        });
-        high - low
-    };
-    let extents = (0..bodies).flat_map(|body| [extent(body, 0), extent(body, 1)]);
-    extents.fold(0.0, f64::max)
+/// Largest extent of the path of any of some places, in x or y (m).
+fn largest_extent(samples: &[Observation], places: impl Fn(&Observation) -> Vec<[f64; 2]>) -> f64 {
+    let mut spans: Vec<[(f64, f64); 2]> = Vec::new();
+    for sample in samples {
+        let places = places(sample);
+        spans.resize(places.len(), [(f64::INFINITY, f64::NEG_INFINITY); 2]);
+        for (span, place) in spans.iter_mut().zip(places) {
+            for ((low, high), x) in span.iter_mut().zip(place) {
+                (*low, *high) = (f64::min(*low, x), f64::max(*high, x));
+            }
+        }
+    }
+    spans.iter().flatten().map(|(low, high)| high - low).fold(0.0, f64::max)
 }
 
 impl Scales {
@@ -157,6 +176,8 @@ impl Scales {
             force: at_least(largest.force, force),
             torque: at_least(largest.torque, force * length),
             moment: at_least(largest.moment, force * length),
+            point_position: at_least(largest.point_position, length),
+            point_velocity: at_least(largest.point_velocity, rate * length),
         }
     }
 

@@ -13,6 +13,8 @@ pub struct Observation {
     pub joints: Vec<JointObservation>,
     /// Torque of each drive on the second body of its joint (N m).
     pub drive_torques: Vec<f64>,
+    /// Every point that the case wants to be observed.
+    pub points: Vec<PointObservation>,
     /// Energies and works.
     pub energy: EnergyObservation,
     /// What x, y, angle and their rates of each body, then the offset of each clearance, are
@@ -36,6 +38,17 @@ pub struct BodyObservation {
     pub acceleration: [f64; 2],
     /// Angular acceleration (rad/s²).
     pub angular_acceleration: f64,
+}
+
+/// Position, velocity and acceleration of a point of a body, fixed frame.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct PointObservation {
+    /// Position (m).
+    pub position: [f64; 2],
+    /// Velocity (m/s).
+    pub velocity: [f64; 2],
+    /// Acceleration (m/s²).
+    pub acceleration: [f64; 2],
 }
 
 /// A journal in its bearing.

@@ -3,10 +3,10 @@
 use super::layout::Role;
 use super::{
     BodyObservation, ClearanceObservation, EnergyObservation, JointObservation, Mechanism,
-    Observation,
+    Observation, PointObservation,
 };
 use crate::clearance::Mode;
-use crate::model::Owner;
+use crate::model::{Owner, Point};
 use crate::plane::{Vector, Wrench};
 use crate::scalar::Scalar;
 
@@ -22,6 +22,7 @@ impl<S: Scalar> Mechanism<S> {
             drive_torques: (0..self.model.drives().len())
                 .map(|drive| self.drive_torque(drive).to_f64())
                 .collect(),
+            points: self.model.points().iter().map(|point| self.observe_point(point)).collect(),
             energy: self.observe_energy(integrals),
             beyond: self.beyond(),
         }
@@ -55,6 +56,21 @@ impl<S: Scalar> Mechanism<S> {
             angular_velocity: motion.angular.to_f64(),
             acceleration: doubles(acceleration.linear),
             angular_acceleration: acceleration.angular.to_f64(),
+        }
+    }
+
+    /// ```text
+    /// p = r + A s,   ṗ = ṙ + ω A s⊥,   p̈ = r̈ + α A s⊥ − ω² A s
+    /// ```
+    fn observe_point(&self, point: &Point<S>) -> PointObservation {
+        let (pose, motion) = (&self.now.poses[point.body], &self.now.motions[point.body]);
+        let (arm, turn) = (pose.rotate(point.at), motion.angular);
+        let inward = arm * -(turn * turn);
+        let acceleration = self.now.accelerations[point.body].at(arm) + inward;
+        PointObservation {
+            position: doubles(pose.position + arm + self.model.origin()),
+            velocity: doubles(motion.at(arm)),
+            acceleration: doubles(acceleration),
         }
     }
 

@@ -45,6 +45,7 @@ pub fn check(description: &Description) -> Vec<Complaint> {
         check_load(&mut complaints, description, load);
     }
     check_starts(&mut complaints, description);
+    check_observed(&mut complaints, description);
     complaints.into_vec()
 }
 
@@ -289,6 +290,19 @@ fn find_point<'a>(
         false => format!("body {:?}", shortened(body)),
     };
     Err(format!("{owner} has no point {:?}{near}", shortened(name)))
+}
+
+/// What is observed is there, and named once.
+fn check_observed(complaints: &mut Complaints, description: &Description) {
+    let key = KeyPath::new(["observe", "points"]);
+    let mut seen = HashSet::new();
+    for point in &description.observed {
+        if let Err(reason) = find_point(complaints, description, point) {
+            complaints.add(key.clone(), reason);
+        } else if !seen.insert(point) {
+            complaints.add(key.clone(), format!("names {point:?} twice"));
+        }
+    }
 }
 
 fn check_clearance(

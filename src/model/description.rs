@@ -24,6 +24,12 @@ pub struct Description {
     pub start: Vec<StartDescription>,
     /// Where in their bearings journals start.
     pub journals: Journals,
+    /// Time of courses at t = 0 (s); `None`: 0.
+    pub clock: Option<Decimal>,
+    /// Penetration rates (m/s) at the begin of the contacts that a start is in, by joint.
+    pub contacts: Vec<(String, Decimal)>,
+    /// Points that are observed, each written `body.point`.
+    pub observed: Vec<String>,
 }
 
 /// Where in their bearings journals start, as nearly as fixed poses leave it open.

@@ -58,6 +58,15 @@ pub struct Start<S> {
     pub fixed: bool,
 }
 
+/// A point of a body, or of the ground.
+#[derive(Debug, Clone, Copy)]
+pub struct Point<S> {
+    /// Index of the body.
+    pub body: usize,
+    /// Where it is (m), in the body's frame; of the ground from the model's origin.
+    pub at: Vector<S>,
+}
+
 /// Names of a model's parts, each list in the order of the case file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Names {
@@ -69,6 +78,8 @@ pub struct Names {
     pub clearances: Vec<String>,
     /// Drives.
     pub drives: Vec<String>,
+    /// Points that are observed, as `coupler.P`.
+    pub points: Vec<String>,
 }
 
 /// A mechanism whose every number is in range and whose every reference leads somewhere.
@@ -83,6 +94,7 @@ pub struct Model<S> {
     drives: Vec<Drive<S>>,
     loads: Vec<Load<S>>,
     starts: Vec<Start<S>>,
+    points: Vec<Point<S>>,
 }
 
 impl<S: Scalar> Model<S> {
@@ -117,14 +129,16 @@ impl<S: Scalar> Model<S> {
             let relation = known("joints", &joint.name, Relation::new(&joint.part, &ends))?;
             joints.push(Joint { relation, ends, clearance });
         }
+        let clock = description.clock.as_ref().map_or(S::zero(), Decimal::value);
         let drives = description.drives.iter().map(|drive| {
             let joint = position(&names.joints, &drive.joint);
-            let course = known("drives", &drive.name, Course::of(&drive.part))?;
+            let course = known("drives", &drive.name, Course::of(&drive.part))?.ahead(clock);
             Ok::<_, Vec<Complaint>>(Drive { joint, course })
         });
         let loads = description.loads.iter().map(|load| {
             let sites = Sites::of(description, &frame, &load.part);
-            let mut ends = load::Ends { pair: sites.pair, datum: -frame.origin(), joint: None };
+            let (pair, datum) = (sites.pair, -frame.origin());
+            let mut ends = load::Ends { pair, datum, joint: None, clock };
             if let Some(Value::Text(joint)) = load.part.get("joint") {
                 let index = position(&names.joints, joint);
                 (ends.pair, ends.joint) =
@@ -137,6 +151,10 @@ impl<S: Scalar> Model<S> {
             inertias: with_ground(|body| &body.inertia),
             drives: drives.collect::<Result<_, _>>()?,
             loads: loads.collect::<Result<_, _>>()?,
+            points: (description.observed.iter())
+                .map(|written| point(description, &frame, written))
+                .map(|(body, at)| Point { body, at })
+                .collect(),
             starts: bodies().map(|body| start(description, &frame, &body.name)).collect(),
             joints,
             clearances,
@@ -192,6 +210,11 @@ impl<S: Scalar> Model<S> {
         &self.starts
     }
 
+    /// Points that are observed.
+    pub fn points(&self) -> &[Point<S>] {
+        &self.points
+    }
+
     /// Name of a body by its index, `ground` among them.
     pub fn body_name(&self, body: usize) -> &str {
         if body == GROUND { "ground" } else { &self.names.bodies[body - 1] }
@@ -206,6 +229,7 @@ fn names(description: &Description) -> Names {
         joints: joints().map(|joint| joint.name.clone()).collect(),
         clearances: joints().filter(has_clearance).map(|joint| joint.name.clone()).collect(),
         drives: description.drives.iter().map(|drive| drive.name.clone()).collect(),
+        points: description.observed.clone(),
     }
 }
 

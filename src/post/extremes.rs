@@ -187,6 +187,7 @@ pub(super) fn names_of(file: &ResultFile) -> Names {
         joints: file.joints().to_vec(),
         clearances: file.clearances().to_vec(),
         drives: file.drives().to_vec(),
+        points: file.points().to_vec(),
     }
 }
 

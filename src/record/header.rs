@@ -23,6 +23,8 @@ pub struct Header {
     pub clearances: Vec<String>,
     /// Names of the drives.
     pub drives: Vec<String>,
+    /// Names of the points that are observed.
+    pub points: Vec<String>,
     /// Version of SUNDIALS: attribute `sundials_version`.
     pub sundials_version: String,
     /// More attributes of the root, with their names: tolerances, decisions.
@@ -44,7 +46,8 @@ impl Header {
     pub(super) fn block_rows(&self) -> usize {
         let samples = self.samples.and_then(|samples| usize::try_from(samples).ok());
         let rows = samples.unwrap_or(usize::MAX).clamp(*ROWS.start(), *ROWS.end());
-        let width = self.bodies.len().max(self.joints.len()).max(1) * size_of::<f64>();
+        let width = self.bodies.len().max(self.joints.len()).max(self.points.len()).max(1)
+            * size_of::<f64>();
         rows.min(WIDEST / width).max(1)
     }
 }

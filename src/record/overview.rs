@@ -35,6 +35,7 @@ impl Overview {
         let rest = file.attributes().iter().filter(|(name, _)| !told.contains(&name.as_str()));
         let dimensions = Dimension::ALL
             .into_iter()
+            .filter(|dimension| *dimension != Dimension::Point || !file.points().is_empty())
             .map(|dimension| (dimension, file.length(dimension), file.names(dimension).to_vec()));
         Ok(Overview {
             path: file.path().to_owned(),

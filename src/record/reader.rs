@@ -7,6 +7,7 @@ use super::sound::{Member, Ration, members};
 use super::{Attribute, Error, LibraryError};
 use crate::mechanism::{
     BodyObservation, ClearanceObservation, JointObservation, Measure, Measures, Observation,
+    PointObservation,
 };
 use crate::model::{did_you_mean, is_name, shortened};
 use crate::run::{Contact, Event, Extremum, Peak, Revolution};
@@ -109,6 +110,11 @@ impl ResultFile {
     /// Names of the drives.
     pub fn drives(&self) -> &[String] {
         self.names(Dimension::Drive)
+    }
+
+    /// Names of the points that are observed, `coupler.P`.
+    pub fn points(&self) -> &[String] {
+        self.names(Dimension::Point)
     }
 
     /// All attributes of the root, in the order in which they were written.
@@ -276,11 +282,13 @@ impl ResultFile {
             clearances: vec![ClearanceObservation::default(); self.clearances().len()],
             joints: vec![JointObservation::default(); self.joints().len()],
             drive_torques: vec![0.0; self.drives().len()],
+            points: vec![PointObservation::default(); self.points().len()],
             ..Observation::default()
         };
         let mut all = vec![none; rows.len()];
         let along_samples = DATASETS.iter().filter(|dataset| dataset.rows() == Dimension::Time);
-        for dataset in along_samples {
+        let of_nothing = |dataset: &Dataset| dataset.is_optional() && self.points().is_empty();
+        for dataset in along_samples.filter(|dataset| !of_nothing(dataset)) {
             let table = self.table_rows(self.dataset(dataset.name)?, rows.clone())?;
             for (sample, values) in all.iter_mut().zip(table.values.chunks(table.width.max(1))) {
                 for (item, value) in values.iter().enumerate() {
@@ -449,8 +457,9 @@ impl ResultFile {
 
     fn read_length(&self, dimension: Dimension) -> Result<usize, Error> {
         let name = dimension.name();
-        if dimension == Dimension::Revolution && !self.file.link_exists(name) {
-            // a file of a program that did not keep extremes by revolution
+        let may_miss = [Dimension::Revolution, Dimension::Point];
+        if may_miss.contains(&dimension) && !self.file.link_exists(name) {
+            // a file of a program that did not keep extremes by revolution, or no points to observe
             return Ok(0);
         }
         let (path, missing) = (self.path.clone(), format!("it has no dimension \"{name}\""));
@@ -461,7 +470,8 @@ impl ResultFile {
     }
 
     fn read_names(&self, dimension: Dimension) -> Result<Vec<String>, Error> {
-        let named = [Dimension::Body, Dimension::Joint, Dimension::Clearance, Dimension::Drive];
+        use Dimension::{Body, Clearance, Drive, Joint, Point};
+        let named = [Body, Joint, Clearance, Drive, Point];
         if !named.contains(&dimension) || self.length(dimension) == 0 {
             return Ok(Vec::new());
         }
@@ -474,7 +484,11 @@ impl ResultFile {
             Some(Attribute::Text(names)) => names.split(' ').map(str::to_owned).collect(),
             _ => Vec::new(),
         };
-        if let Some((at, name)) = names.iter().enumerate().find(|(_, name)| !is_name(name)) {
+        let is_right = |name: &str| match name.split_once('.') {
+            Some((body, point)) if dimension == Point => is_name(body) && is_name(point),
+            _ => dimension != Point && is_name(name),
+        };
+        if let Some((at, name)) = names.iter().enumerate().find(|(_, name)| !is_right(name)) {
             let name = shortened(name);
             return Err(self.damaged(format!("{} {at} has no name but {name:?}", dimension.name())));
         }

@@ -1,7 +1,7 @@
 //! What a result file holds: one table for the writer, the reader and whoever lists columns.
 
 use crate::mechanism::{
-    BodyObservation, ClearanceObservation, JointObservation, Measure, Observation,
+    BodyObservation, ClearanceObservation, JointObservation, Measure, Observation, PointObservation,
 };
 use crate::model::Owner;
 use crate::run::{Contact, Event, EventKind, Peak, Revolution};
@@ -30,11 +30,13 @@ pub enum Dimension {
     Peak,
     /// Revolutions of the first drive; one, the whole run, where no drive turns.
     Revolution,
+    /// Points that are observed; a file of a case that observes none has not the dimension.
+    Point,
 }
 
 impl Dimension {
     /// All, in the order in which they stand in a file.
-    pub const ALL: [Dimension; 9] = [
+    pub const ALL: [Dimension; 10] = [
         Dimension::Time,
         Dimension::Body,
         Dimension::Joint,
@@ -44,6 +46,7 @@ impl Dimension {
         Dimension::Contact,
         Dimension::Peak,
         Dimension::Revolution,
+        Dimension::Point,
     ];
 
     /// Name of the dimension and of its scale.
@@ -58,6 +61,7 @@ impl Dimension {
             Dimension::Contact => "contact",
             Dimension::Peak => "peak",
             Dimension::Revolution => "revolution",
+            Dimension::Point => "point",
         }
     }
 
@@ -73,6 +77,7 @@ impl Dimension {
             Dimension::Contact => "index of the contact",
             Dimension::Peak => "index of the peak of a normal force",
             Dimension::Revolution => "index of the revolution of the first drive",
+            Dimension::Point => "index of the point observed",
         }
     }
 }
@@ -118,6 +123,8 @@ pub enum Source {
     Joint(Place<JointObservation>),
     /// The torque of each drive at each sample.
     Drive,
+    /// A value of each point that is observed, at each sample.
+    Point(Place<PointObservation>),
     /// A value of each event.
     Event(Place<Event>),
     /// A value of each contact.
@@ -187,6 +194,10 @@ pub enum Quantity {
     Torque,
     /// Moments of the joints (N m).
     Moment,
+    /// Positions of the points that are observed (m).
+    PointPosition,
+    /// Velocities of these (m/s).
+    PointVelocity,
 }
 
 /// How a page that has fewer samples than the file draws a dataset.
@@ -219,6 +230,7 @@ impl Dataset {
             Source::Clearance(_) => Some(Dimension::Clearance),
             Source::Joint(_) => Some(Dimension::Joint),
             Source::Drive => Some(Dimension::Drive),
+            Source::Point(_) => Some(Dimension::Point),
             Source::Extreme(measure, ..) => Some(match measure {
                 Measure::AccelerationX | Measure::AccelerationY | Measure::AngularAcceleration => {
                     Dimension::Body
@@ -239,6 +251,7 @@ impl Dataset {
             Source::Clearance(place) => (place.get)(&sample.clearances[item]),
             Source::Joint(place) => (place.get)(&sample.joints[item]),
             Source::Drive => sample.drive_torques[item],
+            Source::Point(place) => (place.get)(&sample.points[item]),
             Source::Event(_)
             | Source::Contact(_)
             | Source::Peak(_)
@@ -255,12 +268,18 @@ impl Dataset {
             Source::Clearance(place) => (place.put)(&mut sample.clearances[item], value),
             Source::Joint(place) => (place.put)(&mut sample.joints[item], value),
             Source::Drive => sample.drive_torques[item] = value,
+            Source::Point(place) => (place.put)(&mut sample.points[item], value),
             Source::Event(_)
             | Source::Contact(_)
             | Source::Peak(_)
             | Source::Revolution(_)
             | Source::Extreme(..) => {}
         }
+    }
+
+    /// Whether files of cases with none of its items do without it.
+    pub const fn is_optional(&self) -> bool {
+        matches!(self.source, Source::Point(_))
     }
 
     const fn compared(self, quantity: Quantity) -> Dataset {
@@ -340,11 +359,11 @@ const fn extreme(
 }
 
 /// Every dataset but the index scales, in the order in which they stand in a file.
-pub static DATASETS: [Dataset; 76] = {
+pub static DATASETS: [Dataset; 82] = {
     use Drawn::{Extremes, Smooth};
     use Measure as M;
     use Quantity as Q;
-    use Source::{Body, Clearance, Contact, Drive, Event, Joint, Peak, Revolution, Sample};
+    use Source::{Body, Clearance, Contact, Drive, Event, Joint, Peak, Point, Revolution, Sample};
     [
         real("time", "s", "time", Sample(at!(time))),
         real("position_x", "m", "x of the mass centre, fixed frame", Body(at!(position[0])))
@@ -470,6 +489,32 @@ pub static DATASETS: [Dataset; 76] = {
         real("drive_torque", "N m", "torque of the drive on the second body of its joint", Drive)
             .compared(Q::Torque)
             .drawn(Extremes),
+        real("point_position_x", "m", "x of the point, fixed frame", Point(at!(position[0])))
+            .compared(Q::PointPosition)
+            .drawn(Smooth),
+        real("point_position_y", "m", "y of the point, fixed frame", Point(at!(position[1])))
+            .compared(Q::PointPosition)
+            .drawn(Smooth),
+        real("point_velocity_x", "m/s", "x of the point's velocity", Point(at!(velocity[0])))
+            .compared(Q::PointVelocity)
+            .drawn(Smooth),
+        real("point_velocity_y", "m/s", "y of the point's velocity", Point(at!(velocity[1])))
+            .compared(Q::PointVelocity)
+            .drawn(Smooth),
+        real(
+            "point_acceleration_x",
+            "m/s^2",
+            "x of the point's acceleration",
+            Point(at!(acceleration[0])),
+        )
+        .drawn(Extremes),
+        real(
+            "point_acceleration_y",
+            "m/s^2",
+            "y of the point's acceleration",
+            Point(at!(acceleration[1])),
+        )
+        .drawn(Extremes),
         real("energy_kinetic", "J", "kinetic energy", Sample(at!(energy.kinetic))).drawn(Extremes),
         real(
             "energy_potential",

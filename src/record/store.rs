@@ -129,6 +129,9 @@ impl Store {
 
     fn create_scales(&mut self, header: &Header) -> hdf5::Result<()> {
         for (id, dimension) in Dimension::ALL.into_iter().enumerate() {
+            if dimension == Dimension::Point && header.points.is_empty() {
+                continue;
+            }
             let handle = match names(header, dimension) {
                 Some(names) => named_scale(&self.file, &mut self.written, dimension, names)?,
                 None if dimension == Dimension::Time => {
@@ -157,7 +160,8 @@ impl Store {
     }
 
     fn create_datasets(&mut self, header: &Header) -> hdf5::Result<()> {
-        for dataset in &DATASETS {
+        let left_out = |dataset: &Dataset| dataset.is_optional() && header.points.is_empty();
+        for dataset in DATASETS.iter().filter(|dataset| !left_out(dataset)) {
             let width =
                 dataset.items().map(|items| names(header, items).map_or(0, <[String]>::len));
             let handle = if dataset.name == Dimension::Time.name() {
@@ -200,7 +204,13 @@ impl Store {
             all.push((name, written.map_err(failed(format!("write {name} to"), &self.path))?));
         }
         let open = self.handles.iter().filter(|open| open.dataset.rows() == block.dimension);
-        for (open, values) in open.zip(&block.columns) {
+        // what is left out of this file has no values
+        let is_there =
+            |dataset: &Dataset| open.clone().any(|open| open.dataset.name == dataset.name);
+        let told = datasets_of(block.dimension).zip(&block.columns);
+        let told: Vec<&Vec<f64>> =
+            told.filter(|(dataset, _)| is_there(dataset)).map(|(_, values)| values).collect();
+        for (open, values) in open.zip(told) {
             let Dataset { name, values: stored, .. } = *open.dataset;
             let width = open.dataset.items().map(|_| open.width);
             let written = write_values(&open.handle, stored, (chunks, width), rows.clone(), values)
@@ -299,6 +309,7 @@ fn names(header: &Header, dimension: Dimension) -> Option<&[String]> {
         Dimension::Joint => Some(&header.joints),
         Dimension::Clearance => Some(&header.clearances),
         Dimension::Drive => Some(&header.drives),
+        Dimension::Point => Some(&header.points),
         _ => None,
     }
 }

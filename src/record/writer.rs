@@ -8,7 +8,7 @@ use super::Error;
 use super::header::{Ending, Header, Outcome, utc};
 use super::publish::Draft;
 use super::reader::ResultFile;
-use super::schema::{Dimension, Part, Side, Source};
+use super::schema::{Dataset, Dimension, Part, Side, Source};
 use super::store::{Block, Purpose, Store, datasets_of};
 use crate::mechanism::Observation;
 use crate::run::{Contact, Event, Extremum, Peak, Recorder, Revolution};
@@ -55,6 +55,7 @@ struct Widths {
     joints: usize,
     clearances: usize,
     drives: usize,
+    points: usize,
 }
 
 impl Writer {
@@ -117,6 +118,7 @@ impl Writer {
                 joints: header.joints.len(),
                 clearances: header.clearances.len(),
                 drives: header.drives.len(),
+                points: header.points.len(),
             },
             draft: Some(draft),
             path: path.to_owned(),
@@ -260,7 +262,9 @@ impl Writer {
     ) -> Result<(), Error> {
         let count = rows.len();
         let block = self.block(dimension);
-        for (dataset, column) in datasets_of(dimension).zip(&mut block.columns) {
+        let is_there = |dataset: &Dataset| !dataset.is_optional() || !file.points().is_empty();
+        let columns = datasets_of(dimension).zip(&mut block.columns);
+        for (dataset, column) in columns.filter(|(dataset, _)| is_there(dataset)) {
             column.extend(file.table_rows(dataset, rows.clone())?.values);
         }
         self.count(dimension, count)
@@ -281,6 +285,7 @@ impl Recorder for Writer {
             joints: observation.joints.len(),
             clearances: observation.clearances.len(),
             drives: observation.drive_torques.len(),
+            points: observation.points.len(),
         };
         assert!(widths == self.widths, "an observation has the lists that the header names");
         for (dataset, column) in datasets_of(Dimension::Time).zip(&mut self.samples.columns) {
@@ -292,6 +297,7 @@ impl Recorder for Writer {
                 }
                 Source::Joint(place) => column.extend(observation.joints.iter().map(place.get)),
                 Source::Drive => column.extend(&observation.drive_torques),
+                Source::Point(place) => column.extend(observation.points.iter().map(place.get)),
                 Source::Event(_)
                 | Source::Contact(_)
                 | Source::Peak(_)

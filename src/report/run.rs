@@ -59,6 +59,7 @@ pub(super) struct PageRun<'a> {
     joints: &'a [String],
     clearances: &'a [String],
     drives: &'a [String],
+    points: &'a [String],
     /// Duration of a turn of the first drive (s).
     period: Option<f64>,
     /// Behind which times (s) the state, and forces, torques and accelerations, mean nothing;
@@ -131,6 +132,7 @@ impl<'a> Run<'a> {
             joints: file.joints(),
             clearances: file.clearances(),
             drives: file.drives(),
+            points: file.points(),
             period: self.case.as_ref().and_then(drawing::period),
             horizon: self.horizon()?,
             drawing: self.case.as_ref().and_then(|case| Drawing::of(case, file)),

@@ -61,6 +61,7 @@ impl Recorded {
             joints: words(["A0", "A", "B", "B0"]),
             clearances: clearances.iter().map(|&name| name.to_owned()).collect(),
             drives: words(["crank"]),
+            points: Vec::new(),
             sundials_version: "6.4.1".to_owned(),
             attributes: vec![
                 ("solver_engine".to_owned(), Attribute::from("ida")),

@@ -11,6 +11,12 @@ const ENERGIES = [
 
 const column = (dataset) => (run, item) => run.column(dataset, item);
 
+/** Length of a vector that the file has by x and y. */
+const magnitude = (dataset) => (run, item) => {
+  const [x, y] = [run.column(`${dataset}_x`, item), run.column(`${dataset}_y`, item)];
+  return x && y ? x.map((value, row) => Math.hypot(value, y[row])) : null;
+};
+
 /**
  * Cards in their order. `items(run)` names the curves that a run can have, `values(run, item)`
  * gives one over the run's rows; `state` says that it is known as long as the state is, and not
@@ -82,6 +88,26 @@ export const QUANTITIES = [
     open: false,
     items: (run) => run.bodies,
     values: column("angular_velocity"),
+  },
+  {
+    id: "point-speed",
+    state: true,
+    title: "Speed of point",
+    unit: "m/s",
+    open: true,
+    floor: 0,
+    items: (run) => run.points,
+    values: magnitude("point_velocity"),
+  },
+  {
+    id: "point-acceleration",
+    title: "Acceleration of point",
+    unit: "m/s²",
+    open: false,
+    sampled: true,
+    floor: 0,
+    items: (run) => run.points,
+    values: magnitude("point_acceleration"),
   },
   {
     id: "energy",
