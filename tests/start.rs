@@ -5,9 +5,11 @@
 mod simulated;
 
 use freeplay::case::Case;
+use freeplay::case::Changes;
 use freeplay::clearance::Mode;
 use freeplay::digits::{Scales, Sizes};
-use freeplay::mechanism::Mechanism;
+use freeplay::mechanism::{Mechanism, Observation};
+use freeplay::record::{Dimension, ResultFile};
 use freeplay::scalar::{F256, Scalar};
 use freeplay::simulate::assemble;
 use simulated::{Kept, case, case_of, root, simulate, told};
@@ -412,4 +414,289 @@ fn from_any_rough_pose_doubles_start_as_accurately_as_they_say() {
     }
     println!("{starts} starts, {worst:.2} of what was said");
     assert!(starts > 100 && worst < 1.0, "{starts}, {worst}");
+}
+
+/// Runs `freeplay` in a folder; its exit code and what it said.
+fn freeplay(folder: &std::path::Path, arguments: &[&str]) -> (i32, String) {
+    let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_freeplay"));
+    let output = command.args(arguments).current_dir(folder).output().unwrap();
+    let said = [output.stdout, output.stderr].map(|said| String::from_utf8(said).unwrap()).concat();
+    (output.status.code().unwrap_or(-1), said)
+}
+
+/// Runs a case of the project into a file of a folder, with keys set.
+fn run_into(folder: &std::path::Path, case: &str, name: &str, set: &[&str]) -> ResultFile {
+    let copy = folder.join(case.rsplit('/').next().unwrap());
+    if !copy.exists() {
+        std::fs::copy(root().join(case), &copy).unwrap();
+    }
+    let copy = copy.to_str().unwrap().to_owned();
+    let mut arguments = vec!["run", &copy, "--quiet", "--no-tangent", "-o", name];
+    arguments.extend(set.iter().flat_map(|set| ["--set", set]));
+    let (code, said) = freeplay(folder, &arguments);
+    assert_eq!(code, 0, "{said}");
+    ResultFile::open(&folder.join(name)).unwrap()
+}
+
+/// Everything that tells where a sample stands: positions and velocities, by their bits.
+fn state(sample: &Observation) -> Vec<u64> {
+    let bodies = sample.bodies.iter().flat_map(|body| {
+        let [[x, y], [u, v]] = [body.position, body.velocity];
+        [x, y, body.angle, u, v, body.angular_velocity]
+    });
+    bodies.map(f64::to_bits).collect()
+}
+
+/// The largest distance of two samples, over angles, positions and rates of the sizes given.
+fn distance(one: &Observation, other: &Observation, rate: f64) -> f64 {
+    let pairs = one.bodies.iter().zip(&other.bodies);
+    let off = pairs.flat_map(|(a, b)| {
+        [
+            (a.angle - b.angle).abs(),
+            (a.position[0] - b.position[0]).abs(),
+            (a.position[1] - b.position[1]).abs(),
+            (a.angular_velocity - b.angular_velocity).abs() / rate,
+            (a.velocity[0] - b.velocity[0]).abs() / rate,
+            (a.velocity[1] - b.velocity[1]).abs() / rate,
+        ]
+    });
+    off.fold(0.0, f64::max)
+}
+
+const BOTH: [&str; 2] = ["solver.engine=explicit", "solver.engine=ida"];
+
+/// Samples at multiples of 1/8192 s, which doubles have exactly: so that no time is rounded.
+const EIGHTS: &str = "run.sample_interval=1.220703125e-4";
+
+#[test]
+fn a_run_that_starts_where_another_stood_goes_on_as_it_did() {
+    for engine in BOTH {
+        for case in ["four-bar-a", "four-bar-b", "four-bar-c", "slider-crank"] {
+            let folder = tempfile::tempdir().unwrap();
+            let (folder, path) = (folder.path(), format!("cases/{case}.toml"));
+            let tight = "solver.absolute_tolerance=scaled";
+            let set = [engine, tight, EIGHTS, "run.sampling=uniform", "run.duration=3.90625e-3"];
+            let whole = run_into(folder, &path, "whole.h5", &set);
+            let rows = whole.length(Dimension::Time);
+            let samples = whole.observations(0..rows).unwrap();
+            // the first sample, one in flight, one in contact, and one before the end
+            let touching = |sample: &&Observation| sample.clearances.iter().any(|c| c.in_contact);
+            let in_contact = samples.iter().position(|sample| touching(&sample)).unwrap();
+            let flying = samples[4..].iter().position(|sample| !touching(&sample)).map(|k| k + 4);
+            for row in [0, flying.unwrap_or(1), in_contact, rows - 3] {
+                let at = samples[row].time;
+                let [from, at_key] = ["start.from=whole.h5".to_owned(), format!("start.at={at:?}")];
+                let left = format!("run.duration={:?}", 3.90625e-3 - at);
+                let set = [engine, tight, EIGHTS, "run.sampling=uniform", &from, &at_key, &left];
+                let name = format!("from-{row}.h5");
+                let rest = run_into(folder, &path, &name, &set);
+                let rest = (rest.observations(0..rest.length(Dimension::Time)).unwrap(), rest);
+                let ((told, rest), what) = (rest, format!("{case} with {engine} from {at} s"));
+                assert_eq!(told.len(), rows - row, "{what}");
+                assert_eq!(state(&told[0]), state(&samples[row]), "{what}");
+                for (k, clearance) in samples[row].clearances.iter().enumerate() {
+                    assert_eq!(told[0].clearances[k].in_contact, clearance.in_contact, "{what}");
+                    let last = |file: &ResultFile, time: f64| {
+                        let contacts = file.contacts().unwrap().into_iter();
+                        let open = contacts.filter(|c| c.clearance == k && c.begin <= time);
+                        open.last().map(|contact| contact.impact_rate.to_bits())
+                    };
+                    if clearance.in_contact {
+                        assert_eq!(last(&rest, 0.0), last(&whole, at), "{what}");
+                    }
+                }
+                // doubles lose up to seven digits a revolution of 12 ms there
+                for (ours, theirs) in told.iter().zip(&samples[row..]) {
+                    let off = distance(ours, theirs, 500.0);
+                    assert!(off < 1e-7, "{what}: off by {off:e} at {} s", ours.time);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn what_a_start_was_taken_from_stands_in_the_result_which_needs_no_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let set = [EIGHTS, "run.sampling=uniform", "run.duration=1.220703125e-3"];
+    run_into(folder, "cases/four-bar-b.toml", "one.h5", &set);
+    let from = |name: &'static str| [set[0], set[1], set[2], name];
+    let two = run_into(folder, "cases/four-bar-b.toml", "two.h5", &from("start.from=one.h5"));
+    let text = two.text("case_toml").unwrap();
+    assert!(!text.contains("one.h5\"") && text.contains("clock = 0.001220703125"), "{text}");
+    let elsewhere = tempfile::tempdir().unwrap();
+    std::fs::write(elsewhere.path().join("again.toml"), text).unwrap();
+    let (code, said) = freeplay(
+        elsewhere.path(),
+        &["run", "again.toml", "-o", "again.h5", "--no-tangent", "--quiet"],
+    );
+    assert_eq!(code, 0, "{said}");
+    let again = ResultFile::open(&elsewhere.path().join("again.h5")).unwrap();
+    assert_eq!(again.text("case_toml").unwrap(), text);
+    for column in ["angle.follower", "velocity_x.coupler", "normal_force.A", "drive_torque.crank"] {
+        assert_eq!(again.column(column).unwrap(), two.column(column).unwrap(), "{column}");
+    }
+    // and that of a run from there goes on with the time of the first
+    let three = run_into(folder, "cases/four-bar-b.toml", "three.h5", &from("start.from=two.h5"));
+    assert!(three.text("case_toml").unwrap().contains("clock = 0.00244140625"));
+    let turned = three.column("angle.crank").unwrap()[0];
+    assert_eq!(turned, two.column("angle.crank").unwrap().last().copied().unwrap());
+    // a certificate is of the same start
+    let (code, said) = freeplay(
+        folder,
+        &[
+            "certify",
+            "four-bar-b.toml",
+            "--until",
+            "2e-4",
+            "--quiet",
+            "--set",
+            "start.from=one.h5",
+            "--set",
+            EIGHTS,
+        ],
+    );
+    assert!(code == 0 && said.contains("digits"), "{said}");
+    let taken = Changes { set: vec!["start.from=one.h5".parse().unwrap()], ideal: false };
+    let taken = told(Case::read(&folder.join("four-bar-b.toml"), &taken));
+    assert!(digits_of_start(&taken) > 14.0, "{}", digits_of_start(&taken));
+}
+
+#[test]
+fn courses_go_on_where_they_stood() {
+    let text = std::fs::read_to_string(root().join("cases/slider-crank-ideal.toml")).unwrap();
+    let speed = "joint     = \"O\"\nspeed_rpm = 5000.0\n";
+    assert!(text.contains(speed));
+    let ramp = "joint = \"O\"\nkind = \"ramp\"\nspeed_rpm = 5000.0\ntime = 0.0078125\n";
+    let swing = "joint = \"O\"\nkind = \"harmonic\"\namplitude = 0.3\nangular_frequency = 900.0\n";
+    let times: Vec<f64> = (0..33).map(|k| f64::from(k) / 2048.0).collect();
+    let values: Vec<f64> = times.iter().map(|t| 3e4 * t * t).collect();
+    let table =
+        format!("joint = \"O\"\nkind = \"table\"\ntimes = {times:?}\nvalues = {values:?}\n");
+    for drive in [speed, ramp, swing, &table] {
+        let folder = tempfile::tempdir().unwrap();
+        let folder = folder.path();
+        std::fs::write(folder.join("case.toml"), text.replace(speed, drive)).unwrap();
+        let run = |name: &str, set: &[&str]| run_into(folder, "case.toml", name, set);
+        let whole = run("whole.h5", &[EIGHTS, "run.duration=0.0146484375"]);
+        let whole = whole.observations(0..whole.length(Dimension::Time)).unwrap();
+        let set =
+            [EIGHTS, "start.from=whole.h5", "start.at=0.0048828125", "run.duration=9.765625e-3"];
+        let rest = run("rest.h5", &set);
+        let rest = rest.observations(0..rest.length(Dimension::Time)).unwrap();
+        let begin = whole.iter().position(|sample| sample.time == 0.0048828125).unwrap();
+        assert_eq!(rest.len(), whole.len() - begin);
+        for (ours, theirs) in rest.iter().zip(&whole[begin..]) {
+            let off = distance(ours, theirs, 500.0);
+            assert!(off < 1e-13, "{drive} {off:e} at {}", ours.time);
+            let torque = (ours.drive_torques[0] - theirs.drive_torques[0]).abs();
+            assert!(torque < 1e-9, "{drive} {torque:e} N m at {}", ours.time);
+        }
+    }
+}
+
+#[test]
+fn what_no_run_can_start_from_is_told_with_its_key() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let set = [EIGHTS, "run.sampling=uniform", "run.duration=1.220703125e-3"];
+    run_into(folder, "cases/four-bar-b.toml", "one.h5", &set);
+    run_into(folder, "cases/four-bar-a.toml", "other.h5", &set);
+    run_into(folder, "cases/pendulum.toml", "pendulum.h5", &[]);
+    let bristles = "joints.A.clearance.friction={law=\"dahl\", coefficient=0.1, stiffness=1e4}";
+    run_into(
+        folder,
+        "cases/four-bar-a.toml",
+        "dahl.h5",
+        &[EIGHTS, bristles, "run.duration=6.103515625e-3"],
+    );
+    let dahl = ResultFile::open(&folder.join("dahl.h5")).unwrap();
+    let samples = dahl.observations(0..dahl.length(Dimension::Time)).unwrap();
+    let touching = samples.iter().find(|s| s.clearances[0].in_contact).unwrap().time;
+    run_into(folder, "cases/speed-controller.toml", "servo.h5", &["run.duration=1e-3"]);
+    std::fs::write(folder.join("no.h5"), "nothing").unwrap();
+    let at = format!("start.at={touching:?}");
+    for (case, set, words) in [
+        ("four-bar-b", vec!["start.from=none.h5"], vec!["start.from", "none.h5"]),
+        ("four-bar-b", vec!["start.from=no.h5"], vec!["start.from", "HDF5"]),
+        ("four-bar-b", vec!["start.from=pendulum.h5"], vec!["another mechanism", "no body"]),
+        ("four-bar-b", vec!["start.from=other.h5"], vec!["no joint with clearance \"B\""]),
+        ("four-bar-b", vec!["start.from=7"], vec!["start.from", "must be a string"]),
+        ("four-bar-b", vec!["start.at=0.1"], vec!["start.at", "`from`"]),
+        (
+            "four-bar-b",
+            vec!["start.from=one.h5", "start.at=1e-3"],
+            vec!["start.at", "the nearest is 0.0009765625"],
+        ),
+        (
+            "four-bar-b",
+            vec!["start.from=one.h5", "start.crank={angle=1.0, fixed=true}"],
+            vec!["start.crank", "is given too"],
+        ),
+        ("four-bar-b", vec!["start.from=one.h5", "start.closed=true"], vec!["start.closed"]),
+        (
+            "four-bar-b",
+            vec!["start.from=one.h5", "drives.crank.speed_rpm=4000.0"],
+            vec!["start.crank.angle", "the drives have it"],
+        ),
+        (
+            "four-bar-b",
+            vec!["start.from=one.h5", "ground.points.A0=[0.0, 0.01]"],
+            vec!["start.crank"],
+        ),
+        (
+            "four-bar-a",
+            vec!["start.from=dahl.h5", bristles, &at],
+            vec!["start.from", "\"A\"", "friction remembers"],
+        ),
+        ("speed-controller", vec!["start.from=servo.h5"], vec!["\"servo\" remembers"]),
+    ] {
+        let path = format!("{case}.toml");
+        let mut arguments = vec!["run", &path, "-o", "new.h5", "--quiet"];
+        arguments.extend(set.iter().flat_map(|set| ["--set", set]));
+        let (code, said) = freeplay(folder, &arguments);
+        assert_eq!(code, 2, "{set:?}: {said}");
+        assert!(words.iter().all(|word| said.contains(word)), "{set:?}: {said}");
+    }
+    // a flight remembers nothing, whatever the friction
+    let flight = [
+        "run",
+        "four-bar-a.toml",
+        "-o",
+        "new.h5",
+        "--quiet",
+        "--no-tangent",
+        "--set",
+        "start.from=dahl.h5",
+        "--set",
+        "start.at=0",
+        "--set",
+        bristles,
+        "--set",
+        "run.duration=1e-4",
+    ];
+    let (code, said) = freeplay(folder, &flight);
+    assert_eq!(code, 0, "{said}");
+    // what is read is not written over
+    let onto = [
+        "run",
+        "four-bar-b.toml",
+        "-o",
+        "one.h5",
+        "--force",
+        "--quiet",
+        "--set",
+        "start.from=one.h5",
+    ];
+    let (code, said) = freeplay(folder, &onto);
+    assert!(code == 3 && said.contains("is an input"), "{code} {said}");
+    for set in [
+        "start.contact=[{joint=\"B0\", impact_rate=1.0}]",
+        "start.contact=[{joint=\"Q\", impact_rate=1.0}]",
+        "start.contact=[{joint=\"A\", impact_rate=1.0}]",
+    ] {
+        let (code, said) = freeplay(folder, &["check", "four-bar-b.toml", "--set", set]);
+        assert!(code == 2 && said.contains("start.contact"), "{set}: {said}");
+    }
 }

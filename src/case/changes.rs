@@ -20,10 +20,21 @@ impl Changes {
         self.set.is_empty() && !self.ideal
     }
 
+    /// The file that they set the start from.
+    pub(super) fn start_from(&self) -> Option<&str> {
+        let set = self.set.iter().rev().find(|set| set.key.keys() == ["start", "from"])?;
+        set.value.as_str()
+    }
+
     /// Changes a document; comments and layout of the rest stay. Gives what could not be set.
     pub(super) fn apply(&self, document: &mut DocumentMut) -> Vec<Complaint> {
         let set = |change: &Override| {
             let key = change.key.clone();
+            if key.keys() == ["start", "from"] && change.value.is_str() {
+                // what is started from another run has no other start
+                let start = document.get_mut("start").and_then(Item::as_table_like_mut);
+                start.into_iter().for_each(TableLike::clear);
+            }
             let message = set(document.as_table_mut(), key.keys(), &change.value).err()?;
             Some(Complaint { key, message })
         };
@@ -171,5 +182,12 @@ fn remove_clearances(document: &mut DocumentMut) {
         if let Some(joint) = joint.as_table_like_mut() {
             joint.remove("clearance");
         }
+    }
+    // a body of that name would have a table
+    let start = document.get_mut("start").and_then(Item::as_table_like_mut);
+    if let Some(start) = start
+        && start.get("contact").is_some_and(|contact| !contact.is_table_like())
+    {
+        start.remove("contact");
     }
 }

@@ -109,7 +109,7 @@ fn read(path: &Path, name: &str, columns: &[&str]) -> Result<Vec<Array>, String>
 }
 
 /// A number as TOML writes it.
-fn as_number(field: &str) -> Option<Value> {
+pub(super) fn as_number(field: &str) -> Option<Value> {
     let begins =
         field.trim_start_matches(['+', '-']).starts_with(|c: char| c.is_ascii_digit() || c == '.');
     let number = Decimal::new(field).ok().filter(|_| begins)?.to_string();

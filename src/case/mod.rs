@@ -10,6 +10,7 @@ mod mechanism;
 mod plan;
 mod schema;
 mod source;
+mod start_from;
 mod table_reader;
 #[cfg(test)]
 mod tests;
@@ -39,6 +40,8 @@ pub struct Case {
     pub plan: Plan,
     /// The text as run: the file's, with the changes of the command line applied.
     pub text: String,
+    /// The result file that the start was taken from, if it was.
+    pub started_from: Option<PathBuf>,
     /// Values that the program put where the case gives none, in the order of reading.
     pub defaults: Vec<DefaultTaken>,
     source: Source,
@@ -95,7 +98,8 @@ impl Case {
         if !complaints.is_empty() {
             return Err(source.reject(complaints));
         }
-        Ok(Case { name, title, description, plan, text, defaults, source })
+        let started_from = None;
+        Ok(Case { name, title, description, plan, text, started_from, defaults, source })
     }
 
     /// The error that tells complaints about this case, each with its place in what was written.
@@ -110,6 +114,8 @@ pub struct Template {
     path: PathBuf,
     text: String,
     document: DocumentMut,
+    /// The result file that the start is taken from.
+    from: Option<PathBuf>,
     source: Source,
 }
 
@@ -134,12 +140,14 @@ impl Template {
     pub fn new(path: &Path, text: &str) -> Result<Self, Error> {
         let mut document = source::parse(path, text)?;
         let source = Source::new(path, text)?;
-        let text = match files::take_in(path, &mut document) {
-            Ok(true) => document.to_string(),
-            Ok(false) => text.to_owned(),
+        let taken = files::take_in(path, &mut document);
+        let taken = taken.and_then(|any| Ok((any, start_from::take_in(path, &mut document)?)));
+        let (text, from) = match taken {
+            Ok((false, None)) => (text.to_owned(), None),
+            Ok((_, from)) => (document.to_string(), from),
             Err(complaints) => return Err(source.reject(complaints)),
         };
-        Ok(Template { path: path.to_owned(), text, document, source })
+        Ok(Template { path: path.to_owned(), text, document, from, source })
     }
 
     /// The text as it stands in the file, with the numbers of files that belong to it.
@@ -158,6 +166,8 @@ impl Template {
         let mut document = self.document.clone();
         let mut complaints = changes.apply(&mut document);
         complaints.extend(files::take_in(&self.path, &mut document).err().into_iter().flatten());
+        let started = start_from::take_in(&self.path, &mut document);
+        complaints.extend(started.err().into_iter().flatten());
         if !complaints.is_empty() {
             return Err(self.source.overridden(&changes.set).reject(complaints));
         }
@@ -171,7 +181,12 @@ impl Template {
     pub fn case(&self, resolved: String, changes: &Changes) -> Result<Case, Error> {
         // what is recorded as run is what is run: the changed text is read like any other
         let document = source::parse(&self.path, &resolved)?;
-        Case::of(&self.path, resolved, &document, self.source.overridden(&changes.set))
+        let mut case =
+            Case::of(&self.path, resolved, &document, self.source.overridden(&changes.set))?;
+        let beside = self.path.parent().unwrap_or(Path::new(""));
+        let set = changes.start_from().map(|name| beside.join(name));
+        case.started_from = set.or(self.from.clone());
+        Ok(case)
     }
 }
 

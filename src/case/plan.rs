@@ -1,7 +1,7 @@
 //! How long a case runs, what it samples, and how it is solved.
 
 use super::table_reader::TableReader;
-use crate::course::{self, Course};
+use crate::course;
 use crate::model::{Complaint, Complaints, Description, KeyPath};
 use crate::run::{SampleWindow, Schedule};
 use crate::scalar::{Decimal, F256, Scalar};
@@ -186,14 +186,16 @@ impl Plan {
             return complain("the duration is given too: one of the two says how long the run is");
         }
         let period = description.drives.first().and_then(|drive| {
-            let rpm = drive.part.is("speed").then(|| drive.part.decimal("speed_rpm"))?;
-            match rpm {
-                Some(rpm) => Some(F256::from(60) / rpm.value::<F256>().abs()),
-                None => Course::<F256>::of(&drive.part)?.period().map(F256::from_f64),
-            }
+            let given = |kind, key| drive.part.is(kind).then(|| drive.part.decimal(key)).flatten();
+            let turn = given("speed", "speed_rpm").map(|rpm| F256::from(60) / rpm.value::<F256>());
+            let swing = given("harmonic", "angular_frequency")
+                .map(|rate| F256::from(2) * F256::pi() / rate.value::<F256>());
+            turn.or(swing).map(Scalar::abs)
         });
         let Some(period) = period.filter(|period| period.to_f64().is_finite()) else {
-            return complain("needs a first drive that turns at a constant speed");
+            return complain(
+                "needs a first drive that turns at a constant speed, or swings as \"harmonic\" has it",
+            );
         };
         self.duration = Decimal::from((revolutions.value::<F256>() * period).to_f64());
         None
@@ -232,17 +234,20 @@ impl Plan {
     /// What drives prescribe by tables is there for the whole run.
     pub(super) fn check_tables(&self, description: &Description) -> Vec<Complaint> {
         let mut complaints = Complaints::default();
-        let end: F256 = self.duration.value();
+        let clock: F256 = description.clock.as_ref().map_or(F256::from(0), Decimal::value);
+        let end = clock + self.duration.value::<F256>();
         let tables = description.drives.iter().filter(|drive| drive.part.is(course::TABLE));
         for drive in tables {
             let times = drive.part.numbers("times");
             let [Some(first), Some(last)] = [times.first(), times.last()] else { continue };
             let key = KeyPath::new(["drives", &drive.name, "times"]);
-            if first.value::<F256>() > F256::from(0) {
-                let message = format!("begin at {first} s: a drive needs values from t = 0 on");
+            if first.value::<F256>() > clock {
+                let begin = clock.to_f64();
+                let message =
+                    format!("begin at {first} s: a drive needs values from t = {begin} on");
                 complaints.add(key, message);
             } else if end > last.value() {
-                let run = format!("the run ends at {} s", self.duration);
+                let run = format!("the run ends at {} s", end.to_f64());
                 let message =
                     format!("end at {last} s, and {run}: a drive needs values until then");
                 complaints.add(key, message);

@@ -193,6 +193,8 @@ pub fn tables() -> String {
     kinds(&mut text, "Courses: values that change with time", &defs["course"], course::KINDS);
     table(&mut text, "Start: `[start]`", "", &schema["properties"]["start"]);
     table(&mut text, "Start of a body: `NAME = { … }` in `[start]`", "", &defs["start"]);
+    let contact = "Open contacts: `[[start.contact]]`";
+    table(&mut text, contact, "", &defs["contact"]);
     table(&mut text, "Observers: `[observe]`", "", &schema["properties"]["observe"]);
     table(&mut text, "Run: `[run]`", "", &schema["properties"]["run"]);
     table(&mut text, "Windows of samples: `[[run.window]]`", "", &defs["window"]);

@@ -258,6 +258,9 @@ fn same_mechanism(case: &Case, file: &ResultFile) -> Result<Case, NotAReference>
         ("[drives]", ours.drives != theirs.drives),
         ("[loads]", ours.loads != theirs.loads),
         ("[start]", ours.start != theirs.start),
+        ("[start] clock", ours.clock != theirs.clock),
+        ("[start] contact", ours.contacts != theirs.contacts),
+        ("[observe]", ours.observed != theirs.observed),
     ];
     match differs.into_iter().find(|(_, differs)| *differs) {
         Some((what, _)) => Err(NotAReference::OtherMechanism { file: name(), what }),

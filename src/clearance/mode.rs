@@ -72,10 +72,23 @@ impl<S: Scalar> Clearance<S> {
     /// A contact that begins at a depth (m), a rate (m/s) and a slip (m/s), with the slip's acceleration
     /// (m/s²).
     pub fn begin(&self, depth: S, rate: S, slip: S, slip_acceleration: S) -> Contact<S> {
-        let inverse_impact_rate = S::one() / rate.max(self.minimum_impact_rate);
+        self.begun_at(rate, depth, rate, slip, slip_acceleration)
+    }
+
+    /// A contact that began at a rate (m/s), at the depth (m), the rate and the slip (m/s) that it has
+    /// come to, with the slip's acceleration (m/s²).
+    pub fn begun_at(
+        &self,
+        impact_rate: S,
+        depth: S,
+        rate: S,
+        slip: S,
+        slip_acceleration: S,
+    ) -> Contact<S> {
+        let inverse_impact_rate = S::one() / impact_rate.max(self.minimum_impact_rate);
         let pressing = self.normal.pressing(Penetration { depth, rate, inverse_impact_rate });
         Contact {
-            impact_rate: rate,
+            impact_rate,
             inverse_impact_rate,
             branch: self.friction.map(|friction| friction.branch(slip, slip_acceleration)),
             pulling: pressing < S::zero(),

@@ -58,7 +58,7 @@ pub(super) fn certify(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(output) = &arguments.output {
         // an output that cannot be written is told before the work, not after it
         let writer =
-            Writer::create_from(output, header.clone(), arguments.force, &inputs(arguments));
+            Writer::create_from(output, header.clone(), arguments.force, &inputs(arguments, &case));
         drop(writer.map_err(Failure::output)?);
     }
     let digits = arguments.digits.unwrap_or(DIGITS);
@@ -71,7 +71,7 @@ pub(super) fn certify(arguments: &Arguments) -> Result<(), Failure> {
     let told =
         Told { case: &case.name, case_sha256: &case_sha256, names: &names, digits, revolution };
     if let Some(output) = &arguments.output {
-        write(&certificate, output, header, arguments)?;
+        write(&certificate, output, header, arguments, &case)?;
     }
     match arguments.json {
         true => super::print_json(format_args!("{}\n", certificate.json(&told)))?,
@@ -151,9 +151,9 @@ fn progress_bar(quiet: bool) -> ProgressBar {
 }
 
 /// The files that a certificate is made from.
-fn inputs(arguments: &Arguments) -> Vec<&Path> {
-    let case = std::iter::once(arguments.case.path.as_path());
-    case.chain(arguments.reference.as_deref()).collect()
+fn inputs<'a>(arguments: &'a Arguments, case: &'a Case) -> Vec<&'a Path> {
+    let path = std::iter::once(arguments.case.path.as_path());
+    path.chain(arguments.reference.as_deref()).chain(case.started_from.as_deref()).collect()
 }
 
 /// Writes the reference with all that the certificate says.
@@ -162,9 +162,10 @@ fn write(
     output: &Path,
     mut header: crate::record::Header,
     arguments: &Arguments,
+    case: &Case,
 ) -> Result<(), Failure> {
     header.attributes.extend(certificate.reference.attributes());
-    let writer = Writer::create_from(output, header, arguments.force, &inputs(arguments));
+    let writer = Writer::create_from(output, header, arguments.force, &inputs(arguments, case));
     let mut writer = writer.map_err(Failure::output)?;
     let trajectory = &certificate.reference.trajectory;
     let mut record = || {

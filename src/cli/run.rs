@@ -136,7 +136,8 @@ fn open(
     if let Some((option, _)) = asked.into_iter().find(|(_, asked)| *asked && !checkpoints) {
         return Err(Failure::input(Refused::NoCheckpoints { option }));
     }
-    let inputs = [arguments.case.path.as_path()];
+    let inputs = [Some(arguments.case.path.as_path()), case.started_from.as_deref()];
+    let inputs: Vec<&Path> = inputs.into_iter().flatten().collect();
     if !resume && extend.is_none() {
         let writer = Segmented::begin(output, header, *force, &inputs, checkpoints);
         return Ok(Some((writer.map_err(Failure::output)?, None)));

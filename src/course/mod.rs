@@ -5,8 +5,8 @@ use crate::parameter::{Key, Kind, Range, Takes, Values, kinds};
 use crate::scalar::{Decimal, F256, Scalar};
 
 kinds! { $
-    /// A course of any kind.
-    Course, each_course:
+    /// The function of a course of any kind.
+    Shape, each_shape:
     Constant in constant,
     Speed in speed,
     Ramp in ramp,
@@ -72,10 +72,30 @@ pub trait Law<S: Scalar>: Clone {
     }
 }
 
+/// A course: its function, and where that stands at t = 0.
+#[derive(Debug, Clone)]
+pub struct Course<S> {
+    shape: Shape<S>,
+    /// Time (s) of the function at t = 0.
+    clock: S,
+    corners: Vec<S>,
+}
+
 impl<S: Scalar> Course<S> {
+    fn new(shape: Shape<S>) -> Self {
+        let corners = each_shape!(&shape, law => law.corners()).to_vec();
+        Course { shape, clock: S::zero(), corners }
+    }
+
+    /// The same course, `clock` (s) further on at t = 0: f(t + clock).
+    pub fn ahead(self, clock: S) -> Self {
+        let corners = self.corners.iter().map(|corner| *corner - clock);
+        Course { corners: corners.collect(), clock: self.clock + clock, ..self }
+    }
+
     /// The course that these values describe.
     pub fn of(values: &Values) -> Option<Self> {
-        Course::new(values, &Ends(std::marker::PhantomData))
+        Shape::new(values, &Ends(std::marker::PhantomData)).map(Course::new)
     }
 
     /// The course of a key of other values.
@@ -86,24 +106,24 @@ impl<S: Scalar> Course<S> {
 
     /// The course that does not change.
     pub fn constant(value: S) -> Self {
-        Course::Constant(Constant::always(value))
+        Course::new(Shape::Constant(Constant::always(value)))
     }
 
     /// The largest |f|, or an estimate of it.
     pub fn size(&self) -> f64 {
-        each_course!(self, law => law.size())
+        each_shape!(&self.shape, law => law.size())
     }
 
     /// f(t), ḟ(t) and f̈(t).
     #[inline(always)]
     pub fn at(&self, time: S) -> [S; 3] {
-        each_course!(self, law => law.at(time))
+        each_shape!(&self.shape, law => law.at(time + self.clock))
     }
 
     /// An angle f(t) (rad) less whole turns.
     #[inline(always)]
     pub fn wrapped(&self, time: S) -> S {
-        each_course!(self, law => law.wrapped(time))
+        each_shape!(&self.shape, law => law.wrapped(time + self.clock))
     }
 
     /// ḟ(t).
@@ -114,22 +134,22 @@ impl<S: Scalar> Course<S> {
 
     /// Whether f̈ is anything but zero.
     pub fn accelerates(&self) -> bool {
-        each_course!(self, law => law.accelerates())
+        each_shape!(&self.shape, law => law.accelerates())
     }
 
     /// The largest |ḟ| (per s), or an estimate of it.
     pub fn fastest(&self) -> f64 {
-        each_course!(self, law => law.fastest())
+        each_shape!(&self.shape, law => law.fastest())
     }
 
     /// Time (s) after which the motion repeats itself, if it does.
     pub fn period(&self) -> Option<f64> {
-        each_course!(self, law => law.period())
+        each_shape!(&self.shape, law => law.period())
     }
 
     /// Time (s) after which there is nothing new to be seen; `None` where nothing moves.
     pub fn all(&self) -> Option<f64> {
-        each_course!(self, law => law.all())
+        each_shape!(&self.shape, law => law.all())
     }
 
     /// Angular frequency (rad/s) of a course that swings; none of one that goes evenly.
@@ -137,9 +157,10 @@ impl<S: Scalar> Course<S> {
         self.accelerates().then(|| self.period().map(|period| std::f64::consts::TAU / period))?
     }
 
-    /// Times (s) at which a derivative of f jumps, in their order.
+    /// Times (s) at which a derivative of f jumps, in their order; those behind a start that is ahead
+    /// are negative.
     pub fn corners(&self) -> &[S] {
-        each_course!(self, law => law.corners())
+        &self.corners
     }
 }
 

@@ -62,7 +62,7 @@ impl<S: Scalar> Force<S> {
             direction: if whole { along } else { along * (S::one() / along.norm()) },
             magnitude: match whole {
                 true => Course::constant(S::one()),
-                false => Course::of_key(values, "magnitude"),
+                false => Course::of_key(values, "magnitude").ahead(ends.clock),
             },
             turns_along: values.text("frame") == "body",
         }

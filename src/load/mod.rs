@@ -41,6 +41,8 @@ pub struct Ends<S> {
     pub datum: Vector<S>,
     /// Index of the joint that it sits in, and what that holds; `None` where it sits in none.
     pub joint: Option<(usize, Relation<S>)>,
+    /// Time (s) of courses at t = 0.
+    pub clock: S,
 }
 
 /// Powers of a load (W).

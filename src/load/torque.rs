@@ -32,8 +32,8 @@ pub struct Torque<S>(Course<S>);
 
 impl<S: Scalar> Torque<S> {
     /// The torque that these values describe.
-    pub fn new(values: &Values, _: &Ends<S>) -> Self {
-        Torque(Course::of_key(values, "torque"))
+    pub fn new(values: &Values, ends: &Ends<S>) -> Self {
+        Torque(Course::of_key(values, "torque").ahead(ends.clock))
     }
 }
 

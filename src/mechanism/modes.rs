@@ -6,6 +6,7 @@
 //! flight tells: the first change of δ that is more than rounding. If that is outward the joint
 //! begins in contact, whatever the order of the derivative behind it (a disc beside its bearing's
 //! centre, released under gravity: δ = g² t⁴/8c); if it is inward, or if there is none, in flight.
+//! A joint that the model says to be in contact is, with the rate at which that began.
 
 use super::Mechanism;
 use super::layout::Role;
@@ -41,6 +42,10 @@ impl<S: Scalar> Mechanism<S> {
             let law = &self.model.clearances()[k];
             let gap = self.now.gap(k, law);
             let (place, pace) = self.rounding(k, &gap);
+            if self.model.contacts()[k].is_some() && gap.eccentricity > S::zero() {
+                self.begin_contact(k);
+                continue;
+            }
             if gap.depth.to_f64() < -place || gap.eccentricity == S::zero() {
                 continue;
             }
@@ -65,13 +70,14 @@ impl<S: Scalar> Mechanism<S> {
         }
         self.evaluate(state)?;
         let now = &self.now;
-        for ((law, mode), touch) in
-            self.model.clearances().iter().zip(&mut self.modes).zip(&now.touches)
-        {
+        let clearances = self.model.clearances().iter().zip(self.model.contacts());
+        for (((law, given), mode), touch) in clearances.zip(&mut self.modes).zip(&now.touches) {
             let (Mode::Contact(contact), Some(touch)) = (mode, touch) else { continue };
             let (gap, rates) = (&touch.gap, &touch.rates);
             let (_, acceleration) = law.second_rates(gap, rates, &now.motions, &now.accelerations);
-            *contact = law.begin(gap.depth, contact.impact_rate, rates.slip, acceleration);
+            let began = contact.impact_rate;
+            let rate = if given.is_some() { rates.rate } else { began };
+            *contact = law.begun_at(began, gap.depth, rate, rates.slip, acceleration);
         }
         Ok(())
     }
@@ -96,7 +102,9 @@ impl<S: Scalar> Mechanism<S> {
         let law = &self.model.clearances()[k];
         let gap = self.now.gap(k, law);
         let rates = law.rates(&gap, &self.now.motions);
-        self.modes[k] = Mode::Contact(law.begin(gap.depth, rates.rate, rates.slip, S::zero()));
+        let began = self.model.contacts()[k].unwrap_or(rates.rate);
+        let contact = law.begun_at(began, gap.depth, rates.rate, rates.slip, S::zero());
+        self.modes[k] = Mode::Contact(contact);
     }
 
     /// Begins the contacts of journals that rest on the wall and would go outward. The force of

@@ -58,6 +58,8 @@ const MANY: usize = 150;
 const MOST_PASSES: usize = 8;
 /// Steps by which a derivative that is carried along follows its value.
 const FOLLOWING: usize = 2;
+/// Roundings by which doubles of another run may be off the constraints, and 71 digits not.
+const GOING_ON: f64 = 1e6;
 /// A start that is not known to this share of itself is none.
 const LEAST_ACCURACY: f64 = 1e-4;
 
@@ -275,9 +277,11 @@ impl<S: Scalar> Mechanism<S> {
     }
 
     /// Takes what is fixed as it is written, where it is off by rounding only.
+    /// What another run has come to is so to the last bit.
     fn hold(&self, x: &mut [S], fixed: &[Fixed<S>]) {
+        let roundings = if self.model.goes_on() { GOING_ON } else { 1e3 };
         for fixed in fixed {
-            let rounding = 1e3 * S::EPSILON * fixed.value.abs().to_f64().max(self.length);
+            let rounding = roundings * S::EPSILON * fixed.value.abs().to_f64().max(self.length);
             if (x[fixed.at] - fixed.value).abs().to_f64() <= rounding {
                 x[fixed.at] = fixed.value;
             }
@@ -512,6 +516,16 @@ impl<S: Scalar> Mechanism<S> {
             }
         }
         complaints.extend(self.unmet(q, allowed, |start| start.coordinates, ["x", "y", "angle"]));
+        complaints.extend(self.unmet_by_drives(
+            |start| start.coordinates,
+            |of, body| {
+                let pose = &of.now.poses[body];
+                [pose.position.x, pose.position.y, pose.angle]
+            },
+            allowed,
+            ["x", "y", "angle"],
+        ));
+        complaints.extend(self.off_the_wall());
         let fixed = self.model.starts().iter().any(|start| start.fixed);
         if !fixed && self.wished_offsets.is_empty() {
             complaints.extend(self.overlaps());
@@ -545,6 +559,55 @@ impl<S: Scalar> Mechanism<S> {
             }
         }
         complaints
+    }
+
+    /// The same of bodies that the drives prescribe, where the start is that of another run.
+    fn unmet_by_drives(
+        &self,
+        of: fn(&Start<S>) -> [Option<S>; 3],
+        prescribed: impl Fn(&Self, usize) -> [S; 3],
+        allowed: f64,
+        keys: [&str; 3],
+    ) -> Vec<Complaint> {
+        let mut complaints = Vec::new();
+        for (body, role) in self.layout.roles.iter().enumerate().skip(1) {
+            let start = &self.model.starts()[body - 1];
+            if *role != Role::Driven || !start.fixed || !self.model.goes_on() {
+                continue;
+            }
+            let values = of(start).into_iter().zip(prescribed(self, body)).zip(keys);
+            for ((wanted, has), key) in values {
+                let Some(wanted) = wanted else { continue };
+                if !((wanted - has).abs().to_f64() <= allowed) {
+                    let message = format!(
+                        "is fixed at {:e}, but the drives have it at {:e} there: they are others \
+                         than those of the run that this start is from",
+                        wanted.to_f64(),
+                        has.to_f64()
+                    );
+                    let name = self.model.body_name(body);
+                    complaints.push(Complaint { key: KeyPath::new(["start", name, key]), message });
+                }
+            }
+        }
+        complaints
+    }
+
+    /// Complaints of contacts that the start is said to be in, but whose journals are off the wall.
+    fn off_the_wall(&self) -> Vec<Complaint> {
+        let clearances = self.model.clearances().iter().zip(self.model.contacts()).enumerate();
+        let off = clearances.filter_map(|(k, (clearance, given))| {
+            let depth = given.and(Some(self.now.gap(k, clearance).depth.to_f64()))?;
+            (depth < -1e-9 * self.length).then(|| Complaint {
+                key: KeyPath::new(["start", "contact"]),
+                message: format!(
+                    "has joint {:?} in contact, but its journal is {:.6e} m off the wall",
+                    self.model.names().clearances[k],
+                    -depth
+                ),
+            })
+        });
+        off.collect()
     }
 
     /// Complaints of journals that end up outside their clearance although nothing is fixed.
@@ -600,7 +663,16 @@ impl<S: Scalar> Mechanism<S> {
         self.hold(&mut v, &fixed);
         let fastest = v.iter().fold(1.0, |fastest: f64, v| fastest.max(v.abs().to_f64()));
         let keys = ["velocity_x", "velocity_y", "angular_velocity"];
-        let complaints = self.unmet(&v, 1e-9 * fastest, |start| start.velocities, keys);
+        let mut complaints = self.unmet(&v, 1e-9 * fastest, |start| start.velocities, keys);
+        complaints.extend(self.unmet_by_drives(
+            |start| start.velocities,
+            |of, body| {
+                let motion = &of.now.motions[body];
+                [motion.linear.x, motion.linear.y, motion.angular]
+            },
+            1e-9 * fastest,
+            keys,
+        ));
         if complaints.is_empty() { Ok((v, solved)) } else { Err(complaints) }
     }
 

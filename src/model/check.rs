@@ -45,6 +45,7 @@ pub fn check(description: &Description) -> Vec<Complaint> {
         check_load(&mut complaints, description, load);
     }
     check_starts(&mut complaints, description);
+    check_open_contacts(&mut complaints, description);
     check_observed(&mut complaints, description);
     complaints.into_vec()
 }
@@ -517,6 +518,27 @@ fn check_starts(complaints: &mut Complaints, description: &Description) {
             complaints.add(key.clone(), format!("there is no body {body:?}{near}"));
         }
         check_start(complaints, &key, start);
+    }
+}
+
+/// The contacts that a start is in are in joints with clearance, each once; the clock is a time.
+fn check_open_contacts(complaints: &mut Complaints, description: &Description) {
+    let start = KeyPath::new(["start"]);
+    if let Some(clock) = &description.clock {
+        complaints.require_finite(start.key("clock"), clock, "s");
+    }
+    let mut seen = HashSet::new();
+    for (k, (joint, rate)) in description.contacts.iter().enumerate() {
+        let key = start.key("contact").key((k + 1).to_string());
+        complaints.require_finite(key.key("impact_rate"), rate, "m/s");
+        let key = key.key("joint");
+        check_joint_name(complaints, description, key.clone(), joint);
+        let known = description.joints.iter().find(|known| known.name == *joint);
+        if known.is_some_and(|known| known.clearance.is_none()) {
+            complaints.add(key, format!("joint {joint:?} has no clearance to be in contact in"));
+        } else if !seen.insert(joint) {
+            complaints.add(key, format!("names joint {joint:?} twice"));
+        }
     }
 }
 

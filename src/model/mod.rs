@@ -94,6 +94,10 @@ pub struct Model<S> {
     drives: Vec<Drive<S>>,
     loads: Vec<Load<S>>,
     starts: Vec<Start<S>>,
+    /// Whether the start is where another run stood.
+    goes_on: bool,
+    /// Penetration rates (m/s) at the begin of the contacts that the start is in, by clearance.
+    contacts: Vec<Option<S>>,
     points: Vec<Point<S>>,
 }
 
@@ -146,7 +150,13 @@ impl<S: Scalar> Model<S> {
             }
             known("loads", &load.name, Load::new(&load.part, &ends))
         });
+        let contact = |joint: &String| {
+            let given = description.contacts.iter().find(|(name, _)| name == joint);
+            given.map(|(_, rate)| rate.value())
+        };
         Ok(Model {
+            goes_on: description.clock.is_some(),
+            contacts: names.clearances.iter().map(contact).collect(),
             masses: with_ground(|body| &body.mass),
             inertias: with_ground(|body| &body.inertia),
             drives: drives.collect::<Result<_, _>>()?,
@@ -208,6 +218,18 @@ impl<S: Scalar> Model<S> {
     /// Start of each body, the ground left out.
     pub fn starts(&self) -> &[Start<S>] {
         &self.starts
+    }
+
+    /// Whether the start is where another run stood, with the time that courses had reached there:
+    /// it holds to the last bit.
+    pub fn goes_on(&self) -> bool {
+        self.goes_on
+    }
+
+    /// Penetration rates (m/s) at the begin of the contacts that the start is in, by clearance; of
+    /// the others `None`.
+    pub fn contacts(&self) -> &[Option<S>] {
+        &self.contacts
     }
 
     /// Points that are observed.

@@ -101,6 +101,8 @@ pub(super) fn same_but_for_clearances(one: &Case, other: &Case) -> bool {
 fn ideal(description: &Description) -> Description {
     let mut ideal = description.clone();
     ideal.start.clear();
+    ideal.contacts.clear();
+    ideal.observed.clear();
     for joint in &mut ideal.joints {
         joint.clearance = None;
     }
