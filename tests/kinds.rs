@@ -711,7 +711,7 @@ fn a_wheel_rolls_on_a_rack_with_the_inertia_of_both_motions() {
 
 /// A case that `freeplay new` writes, without its clearances.
 fn new_case(kind: &str, set: &[&str]) -> freeplay::case::Case {
-    let path = root().join("src/cli/new").join(kind).with_extension("toml");
+    let path = root().join("cases").join(kind).with_extension("toml");
     let set = set.iter().map(|change| change.parse().unwrap()).collect();
     let ideal = freeplay::case::Changes { set, ideal: true };
     simulated::told(freeplay::case::Case::read(&path, &ideal))
@@ -818,7 +818,7 @@ fn a_new_crank_comes_to_the_speed_that_its_controller_is_asked_for() {
 
 #[test]
 fn a_new_manipulator_stands_where_its_motors_have_it() {
-    let with_clearance = case("src/cli/new/three-rrr.toml", &["run.duration=0.02"]);
+    let with_clearance = case("cases/three-rrr.toml", &["run.duration=0.02"]);
     for (kept, allowed) in
         [(simulate(&new_case("three-rrr", &[])), 1e-12), (simulate(&with_clearance), 1.1e-4)]
     {
@@ -1036,7 +1036,8 @@ fn observed_points_stand_in_files_tables_and_comparisons() {
     assert!(told.contains("velocity of point"), "{told}");
     // a comparison with a run that observes nothing, or of a table of points alone
     says(&["compare", "plain.h5", "observed.h5", "--require-digits", "15"]);
-    let theirs: String = times.iter().map(|t| format!("{t:e},{:e}\n", beside_the_rod(*t)[0][0])).collect();
+    let theirs: String =
+        times.iter().map(|t| format!("{t:e},{:e}\n", beside_the_rod(*t)[0][0])).collect();
     std::fs::write(folder.path().join("theirs.csv"), format!("t,x\n{theirs}")).unwrap();
     let map = "x=point_position_x.rod.P";
     says(&["compare", "theirs.csv", "observed.h5", "--map", map, "--require-digits", "12"]);
@@ -1059,5 +1060,41 @@ fn points_that_cannot_be_observed_are_told_with_their_key() {
         let path = std::path::Path::new("case.toml");
         let error = freeplay::case::Case::from_text(path, &text, &changes).unwrap_err().to_string();
         assert!(error.contains(word) && error.contains("observe.points"), "{points}: {error}");
+    }
+}
+
+#[test]
+fn revolutions_of_a_drive_that_swings_are_its_periods() {
+    let text = std::fs::read_to_string(root().join("cases/five-bar.toml")).unwrap();
+    let swapped =
+        text.replace("[drives.one]", "[drives.later]").replace("[drives.two]", "[drives.one]");
+    for (drive, turn) in [(&text, 0.5), (&swapped, 2.0 * PI / 12.566370614359172)] {
+        let mut document = drive.parse::<toml_edit::DocumentMut>().unwrap();
+        // the drive that swings first
+        if drive != &text {
+            let drives = document["drives"].as_table_mut().unwrap();
+            let later = drives.remove("later").unwrap();
+            drives.insert("later", later);
+        }
+        let case = case_of(&document.to_string(), &["run.revolutions=2.5"]);
+        let duration = case.plan.duration.to_f64();
+        assert!((duration / (2.5 * turn) - 1.0).abs() < 1e-15, "{duration}");
+        let kept = simulate(&case);
+        assert_eq!(kept.last().time, duration);
+    }
+    // what never comes round has none
+    for drive in [
+        "kind=\"ramp\"\nspeed_rpm=1.0\ntime=1.0",
+        "kind=\"table\"\ntimes=[0.0, 9.0]\nvalues=[0.0, 1.0]",
+    ] {
+        let text = text
+            .replace("joint     = \"O1\"\nspeed_rpm = 120.0", &format!("joint=\"O1\"\n{drive}"));
+        let changes = freeplay::case::Changes {
+            set: vec!["run.revolutions=2".parse().unwrap()],
+            ideal: false,
+        };
+        let path = std::path::Path::new("case.toml");
+        let error = freeplay::case::Case::from_text(path, &text, &changes).unwrap_err().to_string();
+        assert!(error.contains("run.revolutions") && error.contains("harmonic"), "{error}");
     }
 }

@@ -62,7 +62,9 @@ impl Kind {
     fn file(self, count: u16) -> (&'static str, Cow<'static, str>) {
         let (name, text) = match self {
             Kind::FourBar => ("four-bar.toml", include_str!("new/four-bar.toml")),
-            Kind::SliderCrank => ("slider-crank.toml", include_str!("new/slider-crank.toml")),
+            Kind::SliderCrank => {
+                ("slider-crank.toml", include_str!("../../cases/slider-crank.toml"))
+            }
             Kind::SixBar => ("six-bar.toml", include_str!("new/six-bar.toml")),
             Kind::Pendulum => ("pendulum.toml", include_str!("new/pendulum.toml")),
             Kind::DoublePendulum => {
@@ -71,15 +73,19 @@ impl Kind {
             Kind::JournalInBearing => {
                 ("journal-in-bearing.toml", include_str!("new/journal-in-bearing.toml"))
             }
-            Kind::ScotchYoke => ("scotch-yoke.toml", include_str!("new/scotch-yoke.toml")),
-            Kind::QuickReturn => ("quick-return.toml", include_str!("new/quick-return.toml")),
-            Kind::FiveBar => ("five-bar.toml", include_str!("new/five-bar.toml")),
-            Kind::ThreeRrr => ("three-rrr.toml", include_str!("new/three-rrr.toml")),
-            Kind::SpeedController => {
-                ("speed-controller.toml", include_str!("new/speed-controller.toml"))
+            Kind::ScotchYoke => ("scotch-yoke.toml", include_str!("../../cases/scotch-yoke.toml")),
+            Kind::QuickReturn => {
+                ("quick-return.toml", include_str!("../../cases/quick-return.toml"))
             }
-            Kind::PlanetaryGear => ("planetary-gear.toml", include_str!("new/planetary-gear.toml")),
-            Kind::Press => ("press.toml", include_str!("new/press.toml")),
+            Kind::FiveBar => ("five-bar.toml", include_str!("../../cases/five-bar.toml")),
+            Kind::ThreeRrr => ("three-rrr.toml", include_str!("../../cases/three-rrr.toml")),
+            Kind::SpeedController => {
+                ("speed-controller.toml", include_str!("../../cases/speed-controller.toml"))
+            }
+            Kind::PlanetaryGear => {
+                ("planetary-gear.toml", include_str!("../../cases/planetary-gear.toml"))
+            }
+            Kind::Press => ("press.toml", include_str!("../../cases/press.toml")),
             Kind::FourBars => return ("four-bars.toml", four_bars::four_bars(count).into()),
         };
         (name, text.into())
