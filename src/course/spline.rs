@@ -118,6 +118,30 @@ impl<S: Scalar> Spline<S> {
         &self.knots
     }
 
+    /// The span between knots that x is in: 0 before the first knot, 1 behind it, and so on.
+    pub fn span(&self, x: S) -> usize {
+        self.knots.partition_point(|knot| *knot <= x)
+    }
+
+    /// The knots on either side of a span, where it has some.
+    pub fn ends(&self, span: usize) -> [Option<S>; 2] {
+        [span.checked_sub(1), Some(span)].map(|knot| self.knots.get(knot?).copied())
+    }
+
+    /// Value of the polynomial of a span at x, whether or not x is in it; outside of the points the
+    /// first or the last value.
+    pub fn at_span<T: Lift<S>>(&self, span: usize, x: T) -> T {
+        let last = self.knots.len();
+        let within = match span {
+            0 => T::lift(self.knots[0]),
+            span if span >= last => T::lift(self.knots[last - 1]),
+            _ => x,
+        };
+        let Piece { from, coefficients } = &self.pieces[span.clamp(1, self.pieces.len()) - 1];
+        let x = within - T::lift(*from);
+        coefficients.iter().rev().fold(T::zero(), |sum, c| sum * x + T::lift(*c))
+    }
+
     /// Value and two derivatives at x.
     pub fn at<T: Lift<S>>(&self, x: T) -> [T; 3] {
         let (first, last) = (T::lift(self.knots[0]), T::lift(self.knots[self.knots.len() - 1]));

@@ -54,6 +54,19 @@ pub struct Powers<S> {
     pub dissipation: S,
 }
 
+/// Where a load stands between the places at which its formula changes, over a size of its own.
+#[derive(Debug, Clone, Copy)]
+pub struct Gate<S> {
+    /// How far it is beyond the place behind it, where there is one.
+    pub above: Option<S>,
+    /// How far it is from the place ahead.
+    pub below: Option<S>,
+    /// The rate of the first (1/s).
+    pub rate: S,
+    /// The sizes that these are differences of.
+    pub reach: S,
+}
+
 /// What a load does to its two bodies.
 pub trait Acts<S: Scalar>: Clone {
     /// What it puts on first and second body (N, N m), where they stand and move so.
@@ -104,6 +117,27 @@ pub trait Acts<S: Scalar>: Clone {
         (self.wrenches(time, poses, motions), T::zero())
     }
 
+    /// Whether its formula changes at places that it may pass.
+    fn has_gate(&self) -> bool {
+        false
+    }
+
+    /// Where it stands between these, once it has been [put](Acts::pass) between some.
+    fn gate(&self, poses: &[Pose<S>; 2], motions: &[Motion<S>; 2]) -> Option<Gate<S>> {
+        let _ = (poses, motions);
+        None
+    }
+
+    /// Puts it between those where it stands, until this is called again.
+    fn pass(&mut self, poses: &[Pose<S>; 2], motions: &[Motion<S>; 2]) {
+        let _ = (poses, motions);
+    }
+
+    /// Has it pass the place ahead, or the one behind it.
+    fn pass_one(&mut self, ahead: bool) {
+        let _ = ahead;
+    }
+
     /// The friction that it is.
     fn rubs(&self) -> Option<&JointFriction<S>> {
         None
@@ -147,6 +181,28 @@ impl<S: Scalar> Load<S> {
     /// Typical size of what it remembers, if it does.
     pub fn inner_scale(&self) -> Option<f64> {
         each_law!(&self.law, law => law.inner_scale())
+    }
+
+    /// Whether its formula changes at places that it may pass.
+    pub fn has_gate(&self) -> bool {
+        each_law!(&self.law, law => law.has_gate())
+    }
+
+    /// Where it stands between these, if it has been put between some.
+    pub fn gate(&self, poses: &[Pose<S>], motions: &[Motion<S>]) -> Option<Gate<S>> {
+        let (poses, motions) = self.of(poses, motions);
+        each_law!(&self.law, law => law.gate(&poses, &motions))
+    }
+
+    /// Puts it between those where it stands.
+    pub fn pass(&mut self, poses: &[Pose<S>], motions: &[Motion<S>]) {
+        let (poses, motions) = self.of(poses, motions);
+        each_law!(&mut self.law, law => law.pass(&poses, &motions));
+    }
+
+    /// Has it pass the place ahead, or the one behind it.
+    pub fn pass_one(&mut self, ahead: bool) {
+        each_law!(&mut self.law, law => law.pass_one(ahead));
     }
 
     /// The friction that it is, where it is one.

@@ -23,7 +23,7 @@ pub use rub::Jammed;
 pub use system::{ContactRates, SingularPosition};
 
 use crate::clearance::{Clearance, ContactForce, EventSlot, Gap, GapRates, Mode};
-use crate::dae::{Snapshot, Watch};
+use crate::dae::{Direction, Snapshot, State, Watch};
 use crate::friction::{FrictionLaw, Inner, MOST_INNER};
 use crate::joint::{Arms, Blocks, MOST_BODIES, Relation};
 use crate::linear::Symmetric;
@@ -46,6 +46,8 @@ pub struct Mechanism<S> {
     inverse_masses: Vec<S>,
     modes: Vec<Mode<S>>,
     slots: Vec<(usize, EventSlot)>,
+    /// Loads with two event functions each, behind those of the clearances.
+    gates: Vec<usize>,
     /// Event function of the depth, by clearance.
     depth_slots: Vec<usize>,
     /// c^power, by clearance: δ^power over the root of the event function δ/c.
@@ -196,6 +198,7 @@ impl<S: Scalar> Mechanism<S> {
             start_accuracy: 0.0,
             modes: vec![Mode::Flight; model.clearances().len()],
             slots,
+            gates: (0..model.loads().len()).filter(|k| model.loads()[*k].has_gate()).collect(),
             watches: Vec::new(),
             inverse_masses,
             coordinate_scales: Vec::new(),
@@ -289,9 +292,49 @@ impl<S: Scalar> Mechanism<S> {
         bodies.chain(drives).fold(0.0, f64::max)
     }
 
-    /// What event function `slot` watches: the clearance and what of it.
-    pub fn slot(&self, slot: usize) -> (usize, EventSlot) {
-        self.slots[slot]
+    /// What event function `slot` watches: the clearance and what of it; `None` where it is the
+    /// place at which a load changes its formula.
+    pub fn slot(&self, slot: usize) -> Option<(usize, EventSlot)> {
+        self.slots.get(slot).copied()
+    }
+
+    /// Key of what event function `slot` watches.
+    pub fn watched(&self, slot: usize) -> String {
+        match self.slots.get(slot) {
+            Some((k, _)) => format!("joints.{}", self.model.names().clearances[*k]),
+            None => {
+                let load = self.gates[(slot - self.slots.len()) / 2];
+                format!("loads.{}", self.model.load_name(load))
+            }
+        }
+    }
+
+    /// Puts loads whose formulas change at places between those where they stand, as placed. Where
+    /// nothing is integrated they follow at each evaluation.
+    pub fn pass_gates(&mut self) {
+        if self.gates.is_empty() || (self.freedoms() == 0 && self.modes.is_empty()) {
+            return;
+        }
+        for load in &self.gates {
+            self.model.loads_mut()[*load].pass(&self.now.poses, &self.now.motions);
+        }
+        self.watch();
+    }
+
+    /// The same at a state.
+    pub fn pass_gates_at(&mut self, state: State<'_, S>) {
+        self.place(&state);
+        self.pass_gates();
+    }
+
+    /// Value, rate (1/s) and size of the event function of a load's place.
+    fn gate(&self, slot: usize) -> Option<(S, S, S)> {
+        let (load, ahead) = (self.gates[slot / 2], slot % 2 == 1);
+        let gate = self.model.loads()[load].gate(&self.now.poses, &self.now.motions)?;
+        match ahead {
+            false => gate.above.map(|value| (value, gate.rate, gate.reach)),
+            true => gate.below.map(|value| (value, -gate.rate, gate.reach)),
+        }
     }
 
     /// Sets the mode of a clearance.
@@ -316,12 +359,23 @@ impl<S: Scalar> Mechanism<S> {
         let watch =
             |(k, slot): &(usize, EventSlot)| model.clearances()[*k].watch(&modes[*k], *slot);
         self.watches = self.slots.iter().map(watch).collect();
+        let gates = (0..2 * self.gates.len()).map(|slot| match self.gate(slot) {
+            Some(_) => Watch { direction: Direction::Falling, power: 1.0 },
+            None => Watch { direction: Direction::Off, power: 1.0 },
+        });
+        let gates: Vec<Watch> = gates.collect();
+        self.watches.extend(gates);
     }
 
     /// Switches the mode of the clearance that event function `slot` belongs to, as the state
-    /// last evaluated has it.
+    /// last evaluated has it; or has a load pass the
+    /// place that it watches.
     pub fn switch(&mut self, slot: usize) {
-        let (k, what) = self.slots[slot];
+        let Some((k, what)) = self.slot(slot) else {
+            let gate = slot - self.slots.len();
+            self.model.loads_mut()[self.gates[gate / 2]].pass_one(gate % 2 == 1);
+            return self.watch();
+        };
         let clearance = &self.model.clearances()[k];
         let gap = self.now.gap(k, clearance);
         let mode = clearance.switched(&self.modes[k], what, &gap, || {

@@ -205,6 +205,8 @@ impl<S: Scalar> Mechanism<S> {
         self.set_scales(q, v);
         let z = self.start.z.clone();
         let state = State { time: S::zero(), q, v, z: &z, carried: None };
+        self.place(&state);
+        self.pass_gates();
         self.choose_start_modes(state).map_err(start_fault)?;
         self.evaluate(state).map_err(start_fault)?;
         self.start_energy = self.stored_energy();

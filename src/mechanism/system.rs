@@ -33,6 +33,9 @@ impl<S: Scalar> Mechanism<S> {
     }
 }
 
+/// Rounding of the event function of a load's place, in units of the arithmetic's.
+const GATE_ROUNDINGS: f64 = 1e3;
+
 impl<S: Scalar> System<S> for Mechanism<S> {
     fn coordinates(&self) -> usize {
         self.layout.coordinates
@@ -124,11 +127,17 @@ impl<S: Scalar> System<S> for Mechanism<S> {
                 at += 1;
             }
         }
+        for (slot, value) in values[at..].iter_mut().enumerate() {
+            *value = self.gate(slot).map_or(S::one(), |(value, _, _)| value);
+        }
         Ok(())
     }
 
     fn event_rate(&self, slot: usize) -> S {
-        let (k, what) = self.slots[slot];
+        let Some((k, what)) = self.slot(slot) else {
+            let gate = self.gate(slot - self.slots.len());
+            return gate.map_or(S::zero(), |(_, rate, _)| rate);
+        };
         let clearance = &self.model.clearances()[k];
         let now = &self.now;
         let (gap, rates) = match &now.touches[k] {
@@ -147,7 +156,14 @@ impl<S: Scalar> System<S> for Mechanism<S> {
     }
 
     fn course(&self, slot: usize) -> Course {
-        let (k, what) = self.slots[slot];
+        let Some((k, what)) = self.slot(slot) else {
+            let Some((value, rate, grain)) = self.gate(slot - self.slots.len()) else {
+                return Course::NONE;
+            };
+            let [value, rate, grain] = [value, rate, grain].map(S::to_f64);
+            let noise = S::EPSILON * (GATE_ROUNDINGS + 4.0 * grain);
+            return Course { value, rate, grain, noise, ..Course::NONE };
+        };
         let now = &self.now;
         let clearance = &self.model.clearances()[k];
         let gap = match &now.touches[k] {

@@ -93,6 +93,7 @@ pub struct Model<S> {
     clearances: Vec<Clearance<S>>,
     drives: Vec<Drive<S>>,
     loads: Vec<Load<S>>,
+    load_names: Vec<String>,
     starts: Vec<Start<S>>,
     /// Whether the start is where another run stood.
     goes_on: bool,
@@ -161,6 +162,7 @@ impl<S: Scalar> Model<S> {
             inertias: with_ground(|body| &body.inertia),
             drives: drives.collect::<Result<_, _>>()?,
             loads: loads.collect::<Result<_, _>>()?,
+            load_names: description.loads.iter().map(|load| load.name.clone()).collect(),
             points: (description.observed.iter())
                 .map(|written| point(description, &frame, written))
                 .map(|(body, at)| Point { body, at })
@@ -213,6 +215,16 @@ impl<S: Scalar> Model<S> {
     /// Loads.
     pub fn loads(&self) -> &[Load<S>] {
         &self.loads
+    }
+
+    /// Name of a load.
+    pub fn load_name(&self, load: usize) -> &str {
+        &self.load_names[load]
+    }
+
+    /// Loads, whose places between changes of their formulas may be set.
+    pub(crate) fn loads_mut(&mut self) -> &mut [Load<S>] {
+        &mut self.loads
     }
 
     /// Start of each body, the ground left out.

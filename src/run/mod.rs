@@ -98,10 +98,10 @@ pub enum Error<E: std::error::Error + 'static, R: std::error::Error + 'static> {
         source: Fault,
     },
     /// The engine went past an event.
-    #[error("an event of {clearance} was missed before t = {time:e} s")]
+    #[error("an event of {watched} was missed before t = {time:e} s")]
     Missed {
-        /// Key of the joint whose event it was.
-        clearance: String,
+        /// Key of the joint, or the load, whose event it was.
+        watched: String,
         /// Where it was noticed (s).
         time: f64,
     },
@@ -412,6 +412,7 @@ where
         self.witness.energy = kept.energy;
         (self.progress, self.segment, self.counts) = (kept.progress, kept.segment, kept.rulings);
         self.await_sample(kept.next_sample);
+        self.engine.system().pass_gates_at(kept.state.state());
         self.restart(&kept.state)?;
         for (k, held) in kept.touching.iter().enumerate() {
             let rates = self.engine.system().contact_rates(k);
@@ -444,8 +445,8 @@ where
         });
         let Some(slot) = beyond else { return Ok(()) };
         let system = self.engine.system();
-        let clearance = system.model().names().clearances[system.slot(slot).0].clone();
-        Err(Error::Missed { clearance, time })
+        let watched = system.watched(slot);
+        Err(Error::Missed { watched, time })
     }
 
     /// Whether every contact is as shallow as its law can be believed, at the end of the step.
@@ -586,7 +587,10 @@ where
             (0..self.engine.fired().len()).filter(|slot| self.engine.fired()[*slot]).collect();
         let mut begun = Vec::new();
         for slot in fired {
-            let (k, what) = self.engine.system().slot(slot);
+            let Some((k, what)) = self.engine.system().slot(slot) else {
+                self.engine.system().switch(slot);
+                continue;
+            };
             let was_flight = self.engine.system().modes()[k] == Mode::Flight;
             if was_flight && what != EventSlot::Depth {
                 // the contact that this function belongs to has just ended
@@ -618,7 +622,12 @@ where
         what: EventSlot,
         was_flight: bool,
     ) -> Outcome<(), S, E, R> {
-        let (rate, slip) = self.engine.system().gap_rates(clearance);
+        let (mut rate, slip) = self.engine.system().gap_rates(clearance);
+        // one that another run had begun tells the rate at which it did
+        let begun = self.engine.system().model().contacts()[clearance];
+        if let Some(began) = begun.filter(|_| self.scratch.time == S::zero()) {
+            rate = began;
+        }
         let (kind, rate) = match what {
             EventSlot::Depth if was_flight => (EventKind::ContactBegins, rate),
             EventSlot::Depth => (EventKind::ContactEnds, rate),
