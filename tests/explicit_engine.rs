@@ -63,7 +63,7 @@ fn switch(engine: &mut Explicit<F256, Mechanism<F256>>) {
     system.project(now.time, &mut now.q, &mut now.v).unwrap();
     system.evaluate(now.state()).unwrap();
     for slot in (0..fired.len()).filter(|slot| fired[*slot]) {
-        let (clearance, what) = system.slot(slot);
+        let Some((clearance, what)) = system.slot(slot) else { continue };
         if system.modes()[clearance] != Mode::Flight || what == EventSlot::Depth {
             system.switch(slot);
         }

@@ -49,9 +49,9 @@ const KINDS: [&str; 8] = [
 fn expected(file: &ResultFile, table: TableName) -> Table {
     let names: Vec<String> = match table {
         TableName::Samples => file.columns(),
-        TableName::Events => words(
-            "event_time event_clearance event_kind event_rate event_owner event_owner_index",
-        ),
+        TableName::Events => {
+            words("event_time event_clearance event_kind event_rate event_owner event_owner_index")
+        }
         TableName::Contacts => words(
             "contact_clearance contact_begin contact_end contact_impact_rate \
              contact_peak_penetration contact_peak_penetration_time contact_peak_force \

@@ -1145,7 +1145,14 @@ fn engines_begin_anew_where_a_piston_passes_a_knot_of_its_pressures() {
         }
         // knots are 0, 0.25, 0.3 and 0.7: six passages and two at the ends in each period
         assert!(kept.samples.iter().any(|sample| body(sample, 0).position[0] > 0.75));
+        for event in &kept.events {
+            assert_eq!(*event, changes(event.time, Owner::Load(0)));
+            let [x, _] = beyond(event.time);
+            let off = [0.0, 0.25, 0.3, 0.7].map(|knot: f64| (x - knot).abs());
+            assert!(off.into_iter().fold(1.0, f64::min) < within + 2e-14, "{set:?}: {event:?}");
+        }
         let restarts = kept.count("restarts");
+        assert_eq!(kept.events.len() as u64 + 1, restarts, "{set:?}");
         let period = 0.15 + 8.0 / 30.0 + 0.2 * (0.8_f64.asin() + 0.6_f64.asin());
         let least = (8.0 * 2.0 / period).floor() as u64 - 1;
         assert!(restarts >= least && restarts <= 2 * least, "{set:?}: {restarts}, not {least}");

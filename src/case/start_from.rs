@@ -43,9 +43,11 @@ pub(super) fn take_in(
         Some(None) => return Err(complain("at", "must be a number (s)".into())),
     };
     let mut others = start.iter().filter(|(other, _)| !["from", "at"].contains(other));
-    if let Some((other, _)) = others.find(|(_, item)| !is_rough(item)) {
+    let other = others.find(|(_, item)| !is_rough(item)).map(|(other, _)| other.to_owned());
+    drop(others);
+    if let Some(other) = other {
         let rule = "is given too: `from` says how everything starts";
-        return Err(complain(other, rule.into()));
+        return Err(complain(&other, rule.into()));
     }
     let file = path.parent().unwrap_or(Path::new("")).join(&name);
     let wrong = |message: String| complain("from", message);

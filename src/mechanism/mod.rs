@@ -298,14 +298,19 @@ impl<S: Scalar> Mechanism<S> {
         self.slots.get(slot).copied()
     }
 
-    /// Key of what event function `slot` watches.
-    pub fn watched(&self, slot: usize) -> String {
+    /// What event function `slot` belongs to.
+    pub fn owner(&self, slot: usize) -> Owner {
         match self.slots.get(slot) {
-            Some((k, _)) => format!("joints.{}", self.model.names().clearances[*k]),
-            None => {
-                let load = self.gates[(slot - self.slots.len()) / 2];
-                format!("loads.{}", self.model.load_name(load))
-            }
+            Some((k, _)) => Owner::Clearance(*k),
+            None => Owner::Load(self.gates[(slot - self.slots.len()) / 2]),
+        }
+    }
+
+    /// Its key.
+    pub fn watched(&self, slot: usize) -> String {
+        match self.owner(slot) {
+            Owner::Load(load) => format!("loads.{}", self.model.load_name(load)),
+            owner => owner.key(self.model.names()).to_string(),
         }
     }
 

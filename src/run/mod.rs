@@ -588,6 +588,8 @@ where
         let mut begun = Vec::new();
         for slot in fired {
             let Some((k, what)) = self.engine.system().slot(slot) else {
+                let owner = self.engine.system().owner(slot);
+                self.tell_event(owner, EventKind::CourseChanges, 0.0)?;
                 self.engine.system().switch(slot);
                 continue;
             };

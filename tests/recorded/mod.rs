@@ -373,6 +373,7 @@ fn observation(row: usize, header: &Header, numbers: &mut Numbers) -> Observatio
             .map(|_| JointObservation { force: numbers.pair(), moment: numbers.next() })
             .collect(),
         drive_torques: header.drives.iter().map(|_| numbers.next()).collect(),
+        points: Vec::new(),
         energy: EnergyObservation {
             kinetic: numbers.next(),
             potential: numbers.next(),
