@@ -29,9 +29,10 @@ pub(super) fn take_in(
     let Some(from) = start.get("from").filter(|from| !from.is_table_like()) else {
         return match start.get("at").filter(|at| !at.is_table_like()) {
             None => Ok(None),
-            Some(_) => {
-                Err(complain("at", "is a time of the run that `from` names; there is none".into()))
-            }
+            Some(_) => Err(complain(
+                "at",
+                "is a time of the run that `from` names: give both, here or by --set".into(),
+            )),
         };
     };
     let Some(name) = from.as_str().map(str::to_owned) else {
