@@ -13,7 +13,7 @@ use crate::case::{Case, Changes};
 use crate::certify::Horizon;
 use crate::digits::{Scales, Sizes};
 use crate::mechanism::Mechanism;
-use crate::record::{self, DATASETS, ResultFile};
+use crate::record::{self, DATASETS, Dimension, ResultFile};
 use crate::run::Watcher;
 use crate::simulate::assemble;
 use std::path::{Path, PathBuf};
@@ -125,7 +125,13 @@ impl Comparison {
     ) -> Result<Comparison, Error> {
         let files = [Source::open(theirs)?, Source::open(reference)?];
         let subject = Subject::of(&files)?;
-        let compared = subject.parts.compared(request.forces);
+        let mut compared = subject.parts.compared(request.forces);
+        if let [Source::Result(theirs), Source::Result(reference)] = &files
+            && theirs.points() != reference.points()
+        {
+            // what one of them observes alone has no like
+            compared.retain(|column| column.dataset.items() != Some(Dimension::Point));
+        }
         let [theirs_maps, reference_maps] = share_maps(&files, request.maps)?;
         let theirs = Read::new(&files[0], &subject.parts, &compared, theirs_maps)?;
         let reference = Read::new(&files[1], &subject.parts, &compared, reference_maps)?;

@@ -6,7 +6,7 @@ use toml_edit::{DocumentMut, Item, TableLike, Value};
 
 /// Keys of a case that say how it is run, not what it is. Where it starts is part of the motion:
 /// rough starts that differ lead to the same one, others show in the first sample.
-const NOT_THE_MECHANISM: [&str; 5] = ["name", "title", "run", "solver", "start"];
+const NOT_THE_MECHANISM: [&str; 6] = ["name", "title", "observe", "run", "solver", "start"];
 
 /// Says where two mechanisms differ; `None` if they are one.
 pub fn difference(theirs: (&Parts, &Case), reference: (&Parts, &Case)) -> Option<String> {
@@ -22,8 +22,8 @@ pub fn difference(theirs: (&Parts, &Case), reference: (&Parts, &Case)) -> Option
     }
     let (a, b) = (theirs.1, reference.1);
     let same = |a: &Case, b: &Case| {
-        let start = b.description.start.clone();
-        crate::model::Description { start, ..a.description.clone() } == b.description
+        let (start, observed) = (b.description.start.clone(), b.description.observed.clone());
+        crate::model::Description { start, observed, ..a.description.clone() } == b.description
     };
     if same(a, b) {
         return None;
