@@ -106,6 +106,7 @@ fn read_parquet(path: &Path) -> Table {
     let cell = |field: &Field| match field {
         Field::Double(value) => number(*value),
         Field::Byte(value) => number(f64::from(*value)),
+        Field::Int(value) => number(f64::from(*value)),
         Field::Str(word) => Cell::Word(word.clone()),
         other => panic!("no column is a {other:?}"),
     };

@@ -498,8 +498,8 @@ fn a_run_that_starts_where_another_stood_goes_on_as_it_did() {
                     assert_eq!(told[0].clearances[k].in_contact, clearance.in_contact, "{what}");
                     let last = |file: &ResultFile, time: f64| {
                         let contacts = file.contacts().unwrap().into_iter();
-                        let open = contacts.filter(|c| c.clearance == k && c.begin <= time);
-                        open.last().map(|contact| contact.impact_rate.to_bits())
+                        let mut open = contacts.filter(|c| c.clearance == k && c.begin <= time);
+                        open.next_back().map(|contact| contact.impact_rate.to_bits())
                     };
                     if clearance.in_contact {
                         assert_eq!(last(&rest, 0.0), last(&whole, at), "{what}");

@@ -9,8 +9,8 @@ use crate::run::{Assembled, Undecided};
 use crate::simulate::{assemble, ideal_case};
 use std::f64::consts::TAU;
 
-/// Places that the mechanism is looked at, at most.
-const MOST_STRIDES: f64 = 200_000.0;
+/// Bodies that are looked at in all places together, at most: it takes a second or so.
+const MOST_LOOKS: f64 = 400_000.0;
 /// Halvings by which the place where it locks is found.
 const HALVINGS: usize = 40;
 
@@ -92,7 +92,9 @@ fn complaints(error: &case::Error) -> String {
 
 /// Goes through a span (s) in strides, and takes note of the largest forces.
 fn walk(mut assembled: Assembled<f64>, span: f64) -> Turn {
-    let strides = (span / assembled.stride()).ceil().clamp(2.0, MOST_STRIDES);
+    let bodies = assembled.mechanism().model().names().bodies.len();
+    let most = (MOST_LOOKS / bodies as f64).max(2.0);
+    let strides = (span / assembled.stride()).ceil().clamp(2.0, most);
     let stride = assembled.stride().min(span / strides);
     let names = assembled.mechanism().model().names().joints.clone();
     let mut forces: Vec<(String, f64)> = names.into_iter().map(|name| (name, 0.0)).collect();

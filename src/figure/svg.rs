@@ -219,12 +219,9 @@ impl Svg {
             Anchor::End => " text-anchor=\"end\"",
         };
         let (size_written, words) = (number(size), text.to_svg(size));
-        // a reader without these fonts sets others, as wide
-        let width = number(text.width(size));
         let _ = writeln!(
             self.text,
-            "<text {place} font-size=\"{size_written}\"{anchor} textLength=\"{width}\" \
-             lengthAdjust=\"spacingAndGlyphs\" xml:space=\"preserve\">{words}</text>"
+            "<text {place} font-size=\"{size_written}\"{anchor} xml:space=\"preserve\">{words}</text>"
         );
     }
     fn place_outlines(&mut self, place: &str, anchor: Anchor, size: f64, text: &Text) {
