@@ -560,7 +560,9 @@ fn what_a_start_was_taken_from_stands_in_the_result_which_needs_no_file() {
     assert!(code == 0 && said.contains("digits"), "{said}");
     let taken = Changes { set: vec!["start.from=one.h5".parse().unwrap()], ideal: false };
     let taken = told(Case::read(&folder.join("four-bar-b.toml"), &taken));
-    assert!(digits_of_start(&taken) > 14.0, "{}", digits_of_start(&taken));
+    // a journal's offset is that of positions with the rounding of doubles, 3e-17 m each, over 1 mm; a start
+    // that is chosen by its clearances has two digits more
+    assert!(digits_of_start(&taken) > 13.0, "{}", digits_of_start(&taken));
 }
 
 #[test]

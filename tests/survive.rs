@@ -453,7 +453,8 @@ fn nothing_outside_a_result_file_is_read() {
 fn a_claim_beyond_the_file_is_refused_before_memory_is_asked_for() {
     let desk = with_a_run();
     changed(&desk, "claims.h5", |file| {
-        for dataset in DATASETS.iter().filter(|dataset| dataset.rows() == Dimension::Time) {
+        let along = DATASETS.iter().filter(|dataset| dataset.rows() == Dimension::Time);
+        for dataset in along.filter(|dataset| !dataset.is_optional()) {
             let handle = file.dataset(dataset.name)?;
             let mut shape = handle.shape();
             shape[0] = 10_000_000_000;
