@@ -38,7 +38,10 @@ struct DrawnJoint {
     kind: &'static str,
     /// Direction of the line that its second point slides on, in the frame of the first body.
     axis: Option<[f64; 2]>,
-    /// Whether a drive sits on it.
+    /// Radius (m) of a pinion about its second point; the rack is as far off, to the left of the axis
+    /// where it is positive.
+    pinion: Option<f64>,
+    /// Whether a drive or a speed controller sits on it.
     driven: bool,
     clearance: Option<DrawnClearance>,
 }
@@ -110,13 +113,19 @@ fn ideal(description: &Description) -> Description {
 }
 
 fn joints_of(description: &Description) -> Option<Vec<DrawnJoint>> {
+    let controlled = || {
+        let controllers = description.loads.iter().filter(|load| load.part.is("speed-controller"));
+        controllers.map(|controller| controller.part.text("joint"))
+    };
     let joint = |joint: &JointDescription| {
         let [first, second] = joint.between();
         Some(DrawnJoint {
             between: [point_on_body(description, first)?, point_on_body(description, second)?],
             kind: joint.part.kind().word,
             axis: joint.part.get("axis").map(|_| joint.part.vector("axis")),
-            driven: description.drives.iter().any(|drive| drive.joint == joint.name),
+            pinion: joint.part.is("rack").then(|| joint.part.number("radius")),
+            driven: description.drives.iter().any(|drive| drive.joint == joint.name)
+                || controlled().any(|controlled| controlled == joint.name),
             clearance: joint.clearance.as_ref().map(|clearance| DrawnClearance {
                 bearing_radius: clearance.bearing_radius.to_f64(),
                 radial: clearance.radial.to_f64(),

@@ -18,8 +18,12 @@ export function extent(run) {
   const moments = 720;
   for (let k = 0; k <= moments; k++) {
     run.seek(run.begin + ((run.end - run.begin) * k) / moments);
-    const { bodies, centres } = placesOf(run, 1);
+    const { bodies, centres, place } = placesOf(run, 1);
     bodies.flat().concat(centres).forEach(take);
+    for (const joint of run.drawing.joints.filter((joint) => joint.pinion)) {
+      const [x, y] = place(seat(joint));
+      for (const side of [-joint.pinion, joint.pinion]) take([x + side, y + side]);
+    }
   }
   run.drawing.ground.forEach((point) => take(point.at));
   return Number.isFinite(box.left) ? box : null;
@@ -87,7 +91,8 @@ export function drawMechanism(pen, run, view, look) {
     const centre = at(places.place(seat(joint)));
     const colour = seriesColour(look.colourOf(run.joints[index]));
     if (joint.kind === "distance") drawLink(pen, ...joint.between.map((end) => at(places.place(end))), colour);
-    if (joint.axis) drawSlide(pen, run, joint, at(places.place(joint.between[0])), centre, colour, look.symbol);
+    if (joint.pinion) drawPinion(pen, run, joint, centre, joint.pinion * view.scale, colour, look.symbol);
+    else if (joint.axis) drawSlide(pen, run, joint, at(places.place(joint.between[0])), centre, colour, look.symbol);
     if (joint.clearance) drawBearing(pen, run, joint, index, centre, at(places.place(joint.between[1])), view, look);
     else drawPin(pen, centre, colour);
     if (joint.driven) drawDrive(pen, centre, view, joint, look);
@@ -114,12 +119,48 @@ function drawLink(pen, from, to, colour) {
   pen.stroke();
 }
 
+/** How far a body is turned at the time sought (rad). */
+function turned(run, body) {
+  return body === null ? 0 : run.at(run.column("angle", run.bodies[body]));
+}
+
+/** The direction of a joint's axis on the screen (rad). */
+function axisAngle(run, { axis: [x, y], between }) {
+  return -(Math.atan2(y, x) + turned(run, between[0].body));
+}
+
+/** A pinion with a spoke, and the rack that it rolls on; its radius (px) is positive where that is to the left of the axis. */
+function drawPinion(pen, run, joint, centre, radius, colour, s) {
+  const spoke = -turned(run, joint.between[1].body);
+  pen.strokeStyle = colour;
+  pen.lineWidth = 1.6;
+  circle(pen, ...centre, Math.abs(radius));
+  pen.stroke();
+  pen.beginPath();
+  pen.moveTo(...centre);
+  pen.lineTo(centre[0] + Math.abs(radius) * Math.cos(spoke), centre[1] + Math.abs(radius) * Math.sin(spoke));
+  pen.stroke();
+  pen.save();
+  pen.translate(...centre);
+  pen.rotate(axisAngle(run, joint));
+  pen.strokeStyle = theme().muted;
+  pen.lineWidth = 1.2;
+  const reach = Math.max(34 * s, 1.5 * Math.abs(radius));
+  const side = Math.sign(radius);
+  pen.beginPath();
+  pen.moveTo(-reach, -radius);
+  pen.lineTo(reach, -radius);
+  for (let x = -reach; x <= reach - 5; x += 7) {
+    pen.moveTo(x, -radius);
+    pen.lineTo(x + 5, -radius - 6 * side);
+  }
+  pen.stroke();
+  pen.restore();
+}
+
 /** The line that a point slides on, and the block or pin on it. */
 function drawSlide(pen, run, joint, from, centre, colour, s) {
-  const { body } = joint.between[0];
-  const turned = body === null ? 0 : run.at(run.column("angle", run.bodies[body]));
-  const [x, y] = joint.axis;
-  const angle = -(Math.atan2(y, x) + turned);
+  const angle = axisAngle(run, joint);
   const along = [Math.cos(angle), Math.sin(angle)];
   const travel = (centre[0] - from[0]) * along[0] + (centre[1] - from[1]) * along[1];
   const reach = 34 * s;
