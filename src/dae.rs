@@ -32,14 +32,8 @@ pub enum Fault {
     Fatal(Box<dyn Error + Send + Sync>),
 }
 
-/// Cosine and sine of one turning frame of the system.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Turn<S> {
-    /// Cosine of the frame's angle.
-    pub cos: S,
-    /// Sine of the frame's angle.
-    pub sin: S,
-}
+/// Cosine and sine of the angle of one turning frame of the system.
+pub type Turn<S> = [S; 2];
 
 /// A state at which a system is evaluated.
 #[derive(Debug, Clone, Copy)]
@@ -63,9 +57,9 @@ pub struct State<'a, S> {
 pub struct Carried<'a, S> {
     /// Cosines and sines of the turning frames.
     pub turns: &'a [Turn<S>],
-    /// The offsets (m): small differences of large coordinates, which keep the places that the
-    /// difference loses. Empty where the system is to take the differences.
-    pub offsets: &'a [Vector<S>],
+    /// The offsets (m), by x and y: small differences of large coordinates, which keep the places that
+    /// the difference loses. Empty where the system is to take the differences.
+    pub offsets: &'a [[S; 2]],
 }
 
 /// The way through zero at which an event function is an event.

@@ -21,6 +21,12 @@ pub struct Kind {
     pub also: Option<Rule>,
 }
 
+impl Kind {
+    /// What kinds leave out that are geometry, and whose keys each hold by themselves.
+    pub const PLAIN: Kind =
+        Kind { word: "", title: "", source: "", example: "", keys: &[], also: None };
+}
+
 /// What must hold for several keys together: the keys that are wrong, and why.
 pub type Rule = fn(&Values) -> Vec<(&'static str, String)>;
 

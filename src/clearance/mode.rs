@@ -168,6 +168,12 @@ impl<S: Scalar> Clearance<S> {
         }
     }
 
+    /// Time derivative (1/s) of the event function of the depth.
+    #[inline(always)]
+    pub fn depth_event_rate(&self, rates: &GapRates<S>) -> S {
+        rates.rate / self.radial
+    }
+
     /// Time derivative (1/s) of an event function, from δ̈ and v̇_T (m/s²), with the inner states of
     /// the friction.
     pub fn event_rate(
@@ -180,7 +186,7 @@ impl<S: Scalar> Clearance<S> {
         second: (S, S),
     ) -> S {
         match (mode, slot) {
-            (_, EventSlot::Depth) => rates.rate / self.radial,
+            (_, EventSlot::Depth) => self.depth_event_rate(rates),
             (Mode::Flight, _) => S::zero(),
             (Mode::Contact(contact), EventSlot::Pull) => {
                 self.normal.pressing_rate(self.penetration(contact, gap, rates.rate), second.0)

@@ -8,13 +8,12 @@ use crate::scalar::Scalar;
 pub const KIND: Kind = Kind {
     word: "constant",
     title: "does not change; a number stands for it",
-    source: "",
     example: r#"[loads.motor]
 kind = "torque"
 body = "crank"
 torque = { kind = "constant", value = 0.5 }   # or torque = 0.5"#,
     keys: &[Key::new("value", Takes::Number(Range::Any), "", "the value")],
-    also: None,
+    ..Kind::PLAIN
 };
 
 /// The value.

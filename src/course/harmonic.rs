@@ -11,7 +11,6 @@ use crate::scalar::{Decimal, Scalar};
 pub const KIND: Kind = Kind {
     word: "harmonic",
     title: "swings about a mean: mean + amplitude cos(ω t + phase)",
-    source: "",
     example: r#"[drives.rocker]
 joint = "A0"
 kind = "harmonic"
@@ -23,7 +22,7 @@ angular_frequency = 40.0"#,
         Key::new("angular_frequency", Takes::Number(Range::Any), "rad/s", "ω"),
         Key::new("phase", Takes::Number(Range::Any), "rad", "phase at t = 0").or("0.0"),
     ],
-    also: None,
+    ..Kind::PLAIN
 };
 
 /// Mean m, amplitude A, angular frequency ω (rad/s) and phase φ (rad).

@@ -13,7 +13,6 @@ use crate::scalar::Scalar;
 pub const KIND: Kind = Kind {
     word: "ramp",
     title: "goes from rest to a speed in a time, smoothly",
-    source: "",
     example: r#"[drives.crank]
 joint = "A0"
 kind = "ramp"
@@ -26,7 +25,7 @@ time = 0.05"#,
         POSITION,
         Key::new("time", Takes::Number(Range::Positive), "s", "time from rest to the speed"),
     ],
-    also: None,
+    ..Kind::PLAIN
 };
 
 /// Value at t = 0 (rad, m), last speed and the time (s) to it.

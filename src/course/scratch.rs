@@ -11,13 +11,12 @@ use crate::scalar::Scalar;
 pub const KIND: Kind = Kind {
     word: "run-up",
     title: "goes ever faster, from rest",
-    source: "",
     example: r#"[drives.d]
 kind = "run-up"
 joint = "O"
 acceleration = 40.0"#,
     keys: &[Key::new("acceleration", Takes::Number(Range::Any), "rad/s²", "α")],
-    also: None,
+    ..Kind::PLAIN
 };
 
 /// α (rad/s²).

@@ -11,12 +11,11 @@ use crate::scalar::Scalar;
 pub const KIND: Kind = Kind {
     word: "speed",
     title: "goes at a constant speed",
-    source: "",
     example: r#"[drives.crank]
 joint = "A0"
 speed_rpm = 5000.0"#,
     keys: &[SPEED_RPM, ANGLE, VELOCITY, POSITION],
-    also: None,
+    ..Kind::PLAIN
 };
 
 /// Value at t = 0 (rad, m) and speed.

@@ -11,14 +11,13 @@ use crate::scalar::Scalar;
 pub const KIND: Kind = Kind {
     word: "thick",
     title: "friction that grows with the slip",
-    source: "",
     example: r#"[joints.A.clearance]
 friction = { law = "thick", coefficient = 0.1, slip = 1.0 }"#,
     keys: &[
         COEFFICIENT,
         Key::new("slip", Takes::Number(Range::Positive), "m/s", "slip v_1 at which F_T/F_N is the coefficient"),
     ],
-    also: None,
+    ..Kind::PLAIN
 };
 
 /// c_f/v_1 (s/m).

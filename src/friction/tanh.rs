@@ -18,14 +18,13 @@ use crate::scalar::Scalar;
 pub const KIND: Kind = Kind {
     word: "tanh",
     title: "Coulomb friction, smoothed by a hyperbolic tangent",
-    source: "",
     example: r#"[joints.A.clearance]
 friction = { law = "tanh", coefficient = 0.1, transition = 1e-3 }"#,
     keys: &[
         COEFFICIENT,
         Key::new("transition", Takes::Number(Range::Positive), "m/s", "slip v_d of the transition: friction is 76 % of full there"),
     ],
-    also: None,
+    ..Kind::PLAIN
 };
 
 /// The law and its parameters.

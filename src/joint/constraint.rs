@@ -56,21 +56,21 @@ impl<S: Scalar> Constraint<S> {
         }
     }
 
-    /// Whether the coefficients at ẋ and ẏ are constants.
-    pub fn moves_evenly(&self) -> bool {
+    /// The arms, zero where nothing wants them, which the functions below take.
+    #[inline(always)]
+    pub fn arms(&self, poses: &[Pose<S>]) -> Arms<S> {
         match self {
-            Constraint::Revolute(_) | Constraint::Drive(_) => true,
-            Constraint::Derived(_) => false,
+            Constraint::Revolute(joint) => joint.arms(poses),
+            Constraint::Drive(_) => [Vector::zero(); 2],
+            Constraint::Derived(joint) => joint.arms(poses),
         }
     }
 
-    /// The arms (zero where nothing wants them) and Φ_q of each row, which the functions below
-    /// take.
+    /// Φ_q of each row. The functions below that take it look at it only where it follows from Φ.
     #[inline(always)]
-    pub fn reach(&self, poses: &[Pose<S>], arms: &mut Arms<S>, slopes: &mut [Blocks<S>]) {
+    pub fn slopes(&self, poses: &[Pose<S>], arms: &Arms<S>, slopes: &mut [Blocks<S>]) {
         match self {
-            Constraint::Revolute(joint) => {
-                *arms = joint.arms(poses);
+            Constraint::Revolute(_) => {
                 slopes[0] = Revolute::jacobian(0, arms);
                 slopes[1] = Revolute::jacobian(1, arms);
             }
@@ -78,10 +78,7 @@ impl<S: Scalar> Constraint<S> {
                 let [i, j] = drive.jacobian();
                 slopes[0] = [i, j, [S::zero(); 3]];
             }
-            Constraint::Derived(joint) => {
-                *arms = joint.arms(poses);
-                joint.slopes(poses, slopes);
-            }
+            Constraint::Derived(joint) => joint.slopes(poses, slopes),
         }
     }
 

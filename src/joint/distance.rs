@@ -13,7 +13,6 @@ use crate::scalar::{Lift, Scalar};
 pub const KIND: Kind = Kind {
     word: "distance",
     title: "two points stay a length apart, as on a massless link",
-    source: "",
     example: r#"[joints.strut]
 kind = "distance"
 between = ["a.P", "b.Q"]
@@ -22,7 +21,7 @@ length = 0.1"#,
         BETWEEN,
         Key::new("length", Takes::Number(Range::Positive), "m", "distance of the two points"),
     ],
-    also: None,
+    ..Kind::PLAIN
 };
 
 /// The link: its ends and its length (m).
@@ -32,15 +31,12 @@ pub struct Distance<S> {
     length: S,
 }
 
-impl<S: Scalar> Distance<S> {
-    /// The link that these values describe.
-    pub fn new(values: &Values, ends: &Ends<S>) -> Self {
-        Distance { pair: ends.pair, length: values.number("length") }
-    }
-}
-
 impl<S: Scalar> Holonomic<S> for Distance<S> {
     const ROWS: usize = 1;
+
+    fn new(values: &Values, ends: &Ends<S>) -> Self {
+        Distance { pair: ends.pair, length: values.number("length") }
+    }
 
     fn error<T: Lift<S>>(&self, poses: &[Pose<T>; MOST_BODIES]) -> [T; MOST_ROWS] {
         let length = between(&self.pair, poses).norm();

@@ -12,7 +12,6 @@ use crate::scalar::{Lift, Scalar};
 pub const KIND: Kind = Kind {
     word: "fixed",
     title: "two points stay together and their bodies do not turn against each other",
-    source: "",
     example: r#"[joints.weld]
 kind = "fixed"
 between = ["a.P", "b.Q"]
@@ -21,7 +20,7 @@ angle = 0.5"#,
         BETWEEN,
         Key::new("angle", Takes::Number(Range::Any), "rad", "angle of the second body relative to the first").or("0.0"),
     ],
-    also: None,
+    ..Kind::PLAIN
 };
 
 /// The weld: its points and the angle (rad) of the second body relative to the first.
@@ -31,16 +30,13 @@ pub struct Fixed<S> {
     angle: S,
 }
 
-impl<S: Scalar> Fixed<S> {
-    /// The weld that these values describe.
-    pub fn new(values: &Values, ends: &Ends<S>) -> Self {
-        Fixed { pair: ends.pair, angle: values.number("angle") }
-    }
-}
-
 impl<S: Scalar> Holonomic<S> for Fixed<S> {
     const ROWS: usize = 3;
     const ANGLES: [bool; MOST_ROWS] = [false, false, true];
+
+    fn new(values: &Values, ends: &Ends<S>) -> Self {
+        Fixed { pair: ends.pair, angle: values.number("angle") }
+    }
 
     fn error<T: Lift<S>>(&self, poses: &[Pose<T>; MOST_BODIES]) -> [T; MOST_ROWS] {
         let gap = between(&self.pair, poses);

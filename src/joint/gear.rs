@@ -13,7 +13,6 @@ use crate::scalar::{Lift, Scalar};
 pub const KIND: Kind = Kind {
     word: "gear",
     title: "a wheel turns with a pinion by a ratio, as seen from their carrier",
-    source: "",
     example: r#"[joints.mesh]
 kind = "gear"
 between = ["pinion", "wheel"]
@@ -24,7 +23,7 @@ ratio = -0.4"#,
         Key::new("ratio", Takes::Number(Range::NotZero), "", "angle of the wheel over that of the pinion; negative for teeth outside"),
         Key::new("angle", Takes::Number(Range::Any), "rad", "angle of the wheel on the carrier where the pinion's is zero").or("0.0"),
     ],
-    also: None,
+    ..Kind::PLAIN
 };
 
 /// The pair: ratio and angle (rad).
@@ -34,16 +33,13 @@ pub struct Gear<S> {
     angle: S,
 }
 
-impl<S: Scalar> Gear<S> {
-    /// The pair that these values describe.
-    pub fn new(values: &Values, _: &Ends<S>) -> Self {
-        Gear { ratio: values.number("ratio"), angle: values.number("angle") }
-    }
-}
-
 impl<S: Scalar> Holonomic<S> for Gear<S> {
     const ROWS: usize = 1;
     const ANGLES: [bool; MOST_ROWS] = [true, false, false];
+
+    fn new(values: &Values, _: &Ends<S>) -> Self {
+        Gear { ratio: values.number("ratio"), angle: values.number("angle") }
+    }
 
     fn error<T: Lift<S>>(&self, poses: &[Pose<T>; MOST_BODIES]) -> [T; MOST_ROWS] {
         let [pinion, wheel, carrier] = poses.each_ref().map(|pose| pose.angle);

@@ -89,6 +89,9 @@ pub trait Holonomic<S: Scalar>: Copy {
     /// Which rows are angles (rad); the others are lengths (m).
     const ANGLES: [bool; MOST_ROWS] = [false; MOST_ROWS];
 
+    /// The joint that these values describe, where it sits.
+    fn new(values: &Values, ends: &Ends<S>) -> Self;
+
     /// Φ of each row (m, rad) where first, second and third body stand at these poses; zero beyond
     /// the last row. Parameters are lifted into the arithmetic of the poses.
     fn error<T: Lift<S>>(&self, poses: &[Pose<T>; MOST_BODIES]) -> [T; MOST_ROWS];
@@ -168,9 +171,9 @@ mod tests {
                 let mut told = [[0.0; 2]; 3];
                 constraint.position_error(0.0, &poses, &mut told[0]);
                 constraint.velocity_error(0.0, &poses, &motions, &mut told[1]);
-                let mut arms = [Vector::zero(); 2];
+                let arms = constraint.arms(&poses);
                 let mut slopes = [[[0.0; 3]; MOST_BODIES]; 2];
-                constraint.reach(&poses, &mut arms, &mut slopes);
+                constraint.slopes(&poses, &arms, &mut slopes);
                 let (m, a) = (&motions, &accelerations);
                 constraint.acceleration_error(0.0, &arms, &poses, m, a, &mut told[2]);
                 let mut all: Vec<f64> = told.concat();

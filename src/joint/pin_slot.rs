@@ -13,13 +13,12 @@ use crate::scalar::{Lift, Scalar};
 pub const KIND: Kind = Kind {
     word: "pin-slot",
     title: "the second point slides on a line through the first, its body free to turn",
-    source: "",
     example: r#"[joints.slot]
 kind = "pin-slot"
 between = ["lever.O", "crank.A"]
 axis = [1.0, 0.0]"#,
     keys: &[BETWEEN, AXIS],
-    also: None,
+    ..Kind::PLAIN
 };
 
 /// The slot: its points and the axis u in the frame of body `i`.
@@ -29,15 +28,12 @@ pub struct PinSlot<S> {
     axis: Vector<S>,
 }
 
-impl<S: Scalar> PinSlot<S> {
-    /// The slot that these values describe.
-    pub fn new(values: &Values, ends: &Ends<S>) -> Self {
-        PinSlot { pair: ends.pair, axis: unit(values.vector("axis")) }
-    }
-}
-
 impl<S: Scalar> Holonomic<S> for PinSlot<S> {
     const ROWS: usize = 1;
+
+    fn new(values: &Values, ends: &Ends<S>) -> Self {
+        PinSlot { pair: ends.pair, axis: unit(values.vector("axis")) }
+    }
 
     fn error<T: Lift<S>>(&self, poses: &[Pose<T>; MOST_BODIES]) -> [T; MOST_ROWS] {
         let axis = poses[0].rotate(lift(self.axis));

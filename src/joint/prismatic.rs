@@ -16,7 +16,6 @@ pub(super) const AXIS: Key = Key::new("axis", Takes::Vector(Range::Positive), ""
 pub const KIND: Kind = Kind {
     word: "prismatic",
     title: "the second point slides on a line through the first, without relative rotation",
-    source: "",
     example: r#"[joints.slide]
 kind = "prismatic"
 between = ["ground.O", "slider.C"]
@@ -26,7 +25,7 @@ axis = [1.0, 0.0]"#,
         AXIS,
         Key::new("angle", Takes::Number(Range::Any), "rad", "angle of the second body relative to the first").or("0.0"),
     ],
-    also: None,
+    ..Kind::PLAIN
 };
 
 /// The slide: its points, the axis u in the frame of body `i`, and the angle (rad) of the second
@@ -39,12 +38,6 @@ pub struct Prismatic<S> {
 }
 
 impl<S: Scalar> Prismatic<S> {
-    /// The slide that these values describe.
-    pub fn new(values: &Values, ends: &Ends<S>) -> Self {
-        let axis = unit(values.vector("axis"));
-        Prismatic { pair: ends.pair, axis, angle: values.number("angle") }
-    }
-
     /// Rate (m/s) of the travel on the line: how fast the second body slides on the first.
     pub fn rate<T: Lift<S>>(&self, poses: &[Pose<T>; 2], motions: &[Motion<T>; 2]) -> T {
         let [arm_i, arm_j] = self.arms(poses);
@@ -74,6 +67,11 @@ impl<S: Scalar> Prismatic<S> {
 impl<S: Scalar> Holonomic<S> for Prismatic<S> {
     const ROWS: usize = 2;
     const ANGLES: [bool; MOST_ROWS] = [false, true, false];
+
+    fn new(values: &Values, ends: &Ends<S>) -> Self {
+        let axis = unit(values.vector("axis"));
+        Prismatic { pair: ends.pair, axis, angle: values.number("angle") }
+    }
 
     fn error<T: Lift<S>>(&self, poses: &[Pose<T>; MOST_BODIES]) -> [T; MOST_ROWS] {
         let [i, j, _] = poses;

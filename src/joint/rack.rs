@@ -17,7 +17,6 @@ use crate::scalar::{Lift, Scalar};
 pub const KIND: Kind = Kind {
     word: "rack",
     title: "a pinion's centre travels along a rack as the pinion turns on it",
-    source: "",
     example: r#"[joints.teeth]
 kind = "rack"
 between = ["rack.P", "pinion.C"]
@@ -30,7 +29,7 @@ radius = -0.02"#,
                     relative to the first"),
         Key::new("travel", Takes::Number(Range::Any), "m", "travel where that angle is zero").or("0.0"),
     ],
-    also: None,
+    ..Kind::PLAIN
 };
 
 /// The rack: its points, the axis u in the frame of body `i`, radius and travel (m).
@@ -42,9 +41,10 @@ pub struct Rack<S> {
     travel: S,
 }
 
-impl<S: Scalar> Rack<S> {
-    /// The rack that these values describe.
-    pub fn new(values: &Values, ends: &Ends<S>) -> Self {
+impl<S: Scalar> Holonomic<S> for Rack<S> {
+    const ROWS: usize = 1;
+
+    fn new(values: &Values, ends: &Ends<S>) -> Self {
         Rack {
             pair: ends.pair,
             axis: unit(values.vector("axis")),
@@ -52,10 +52,6 @@ impl<S: Scalar> Rack<S> {
             travel: values.number("travel"),
         }
     }
-}
-
-impl<S: Scalar> Holonomic<S> for Rack<S> {
-    const ROWS: usize = 1;
 
     fn error<T: Lift<S>>(&self, poses: &[Pose<T>; MOST_BODIES]) -> [T; MOST_ROWS] {
         let [i, j, _] = poses;

@@ -16,12 +16,11 @@ use crate::scalar::{Lift, Scalar};
 pub const KIND: Kind = Kind {
     word: "revolute",
     title: "two points stay together, or, with a clearance, nearly so",
-    source: "",
     example: r#"[joints.A0]
 kind = "revolute"
 between = ["ground.A0", "crank.A0"]"#,
     keys: &[BETWEEN],
-    also: None,
+    ..Kind::PLAIN
 };
 
 /// The joint: the two points.
@@ -34,6 +33,10 @@ pub struct Revolute<S> {
 impl<S: Scalar> Holonomic<S> for Revolute<S> {
     const ROWS: usize = 2;
 
+    fn new(_: &Values, ends: &Ends<S>) -> Self {
+        Revolute { pair: ends.pair }
+    }
+
     fn error<T: Lift<S>>(&self, poses: &[Pose<T>; MOST_BODIES]) -> [T; MOST_ROWS] {
         let gap = between(&self.pair, poses);
         [gap.x, gap.y, T::zero()]
@@ -41,11 +44,6 @@ impl<S: Scalar> Holonomic<S> for Revolute<S> {
 }
 
 impl<S: Scalar> Revolute<S> {
-    /// The joint where it sits.
-    pub fn new(_: &Values, ends: &Ends<S>) -> Self {
-        Revolute { pair: ends.pair }
-    }
-
     /// A_i s_i and A_j s_j: from the mass centres to the points (m), fixed frame.
     #[inline(always)]
     pub fn arms(&self, poses: &[Pose<S>]) -> [Vector<S>; 2] {

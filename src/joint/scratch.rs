@@ -12,7 +12,6 @@ use crate::scalar::{Lift, Scalar};
 pub const KIND: Kind = Kind {
     word: "parallel",
     title: "two bodies do not turn against each other",
-    source: "",
     example: r#"[joints.p]
 kind = "parallel"
 between = ["a.P", "b.Q"]"#,
@@ -20,23 +19,20 @@ between = ["a.P", "b.Q"]"#,
         BETWEEN,
         Key::new("angle", Takes::Number(Range::Any), "rad", "angle of the second body relative to the first").or("0.0"),
     ],
-    also: None,
+    ..Kind::PLAIN
 };
 
 /// The angle (rad).
 #[derive(Debug, Clone, Copy)]
 pub struct Scratch<S>(S);
 
-impl<S: Scalar> Scratch<S> {
-    /// The joint that these values describe.
-    pub fn new(values: &Values, _: &Ends<S>) -> Self {
-        Scratch(values.number("angle"))
-    }
-}
-
 impl<S: Scalar> Holonomic<S> for Scratch<S> {
     const ROWS: usize = 1;
     const ANGLES: [bool; MOST_ROWS] = [true, false, false];
+
+    fn new(values: &Values, _: &Ends<S>) -> Self {
+        Scratch(values.number("angle"))
+    }
 
     fn error<T: Lift<S>>(&self, [i, j, _]: &[Pose<T>; MOST_BODIES]) -> [T; MOST_ROWS] {
         [j.angle - i.angle - T::lift(self.0), T::zero(), T::zero()]

@@ -12,12 +12,11 @@ use crate::scalar::{Lift, Scalar};
 pub const KIND: Kind = Kind {
     word: "gravity",
     title: "a uniform field of gravity",
-    source: "",
     example: r#"[loads.gravity]
 kind = "gravity"
 acceleration = [0.0, -9.81]"#,
     keys: &[Key::new("acceleration", Takes::Vector(Range::Any), "m/s²", "acceleration of free fall, fixed frame")],
-    also: None,
+    ..Kind::PLAIN
 };
 
 /// Acceleration of free fall g (m/s²), fixed frame, and where potential energy is zero (m).

@@ -23,7 +23,6 @@ use crate::scalar::{Lift, Scalar};
 pub const KIND: Kind = Kind {
     word: "joint-friction",
     title: "friction in an ideal revolute or prismatic joint",
-    source: "",
     example: r#"[loads.rub]
 kind = "joint-friction"
 joint = "B0"
@@ -35,7 +34,7 @@ pin_radius = 0.01"#,
         Key::new("pin_radius", Takes::Number(Range::Positive), "m", "radius r of the pin of a revolute joint").optional(),
         Key::new("preload", Takes::Number(Range::NotNegative), "N", "N₀, the normal force where the joint carries nothing").or("0.0"),
     ],
-    also: None,
+    ..Kind::PLAIN
 };
 
 /// The friction of a joint.

@@ -12,7 +12,6 @@ use crate::scalar::{Lift, Scalar};
 pub const KIND: Kind = Kind {
     word: "drag",
     title: "the air resists a point of a body",
-    source: "",
     example: r#"[loads.air]
 kind = "drag"
 at = "rod.E"
@@ -21,7 +20,7 @@ damping = 0.2"#,
         Key::new("at", Takes::Point, "", "the point"),
         Key::new("damping", Takes::Number(Range::NotNegative), "N s/m", "d"),
     ],
-    also: None,
+    ..Kind::PLAIN
 };
 
 /// The point, in the frame of its body (m), and d (N s/m).

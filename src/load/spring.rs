@@ -15,7 +15,6 @@ use crate::scalar::{Lift, Scalar};
 pub const KIND: Kind = Kind {
     word: "spring",
     title: "a spring and damper between two points",
-    source: "",
     example: r#"[loads.spring]
 kind = "spring"
 between = ["ground.C", "rocker.D"]
@@ -28,7 +27,7 @@ free_length = 0.07785"#,
         Key::new("damping", Takes::Number(Range::NotNegative), "N s/m", "d").or("0.0"),
         Key::new("cubic", Takes::Number(Range::Any), "N/m³", "k₃").or("0.0"),
     ],
-    also: None,
+    ..Kind::PLAIN
 };
 
 /// The spring.

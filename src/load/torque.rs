@@ -13,7 +13,6 @@ use crate::scalar::{Lift, Scalar};
 pub const KIND: Kind = Kind {
     word: "torque",
     title: "a torque on a body",
-    source: "",
     example: r#"[loads.motor]
 kind = "torque"
 body = "crank"
@@ -23,7 +22,7 @@ torque = 0.033"#,
         Key::new("on", Takes::Body, "", "the body that takes the reaction").or("\"ground\""),
         Key::new("torque", Takes::Course, "N m", "the torque, counter-clockwise"),
     ],
-    also: None,
+    ..Kind::PLAIN
 };
 
 /// The torque (N m) on the second body.

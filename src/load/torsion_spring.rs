@@ -12,7 +12,6 @@ use crate::scalar::{Lift, Scalar};
 pub const KIND: Kind = Kind {
     word: "torsion-spring",
     title: "a torsion spring and damper between two bodies",
-    source: "",
     example: r#"[loads.coil]
 kind = "torsion-spring"
 between = ["ground", "wheel"]
@@ -23,7 +22,7 @@ stiffness = 40.0"#,
         Key::new("free_angle", Takes::Number(Range::Any), "rad", "φ₀, the angle of the second body relative to the first without torque").or("0.0"),
         Key::new("damping", Takes::Number(Range::NotNegative), "N m s", "d").or("0.0"),
     ],
-    also: None,
+    ..Kind::PLAIN
 };
 
 /// The spring.

@@ -1,6 +1,6 @@
 //! Forces on the bodies, accelerations and multipliers, and what the drives must do.
 
-use super::layout::{Coupling, Role};
+use super::layout::{Coupling, FreeBody, Hinge};
 use super::{Mechanism, Touch, inner_states};
 use crate::clearance::Mode;
 use crate::dae::{Fault, State};
@@ -65,11 +65,10 @@ impl<S: Scalar> Mechanism<S> {
     /// Accelerations of the free bodies that the wrenches on them give (paper, eq. 14).
     #[inline(always)]
     pub(super) fn accelerate(&mut self) {
-        for (body, role) in self.layout.roles.iter().enumerate() {
-            let Role::Free(at) = *role else { continue };
-            let (wrench, inverse) = (self.now.wrenches[body], &self.inverse_masses[at..at + 3]);
-            self.now.accelerations[body] =
-                Motion { linear: wrench.force * inverse[0], angular: wrench.moment * inverse[2] };
+        let now = &mut self.now;
+        for &FreeBody { body, mass, inertia, .. } in &self.layout.free {
+            let Wrench { force, moment } = now.wrenches[body];
+            now.accelerations[body] = Motion { linear: force * mass, angular: moment * inertia };
         }
     }
 
@@ -79,7 +78,9 @@ impl<S: Scalar> Mechanism<S> {
     /// ```
     /// Friction in joints is part of Q, and depends on λ.
     pub(super) fn solve(&mut self) -> Result<(), Fault> {
-        self.find_rubbing();
+        if !self.rubbings.is_empty() {
+            self.find_rubbing();
+        }
         self.accelerate();
         if self.layout.rows > 0 {
             self.factor().map_err(|singular| self.singular(singular))?;
@@ -103,20 +104,34 @@ impl<S: Scalar> Mechanism<S> {
             self.apply_multipliers();
             self.accelerate();
         }
-        for (body, role) in self.layout.roles.iter().enumerate() {
-            let Role::Free(at) = *role else { continue };
-            let a = self.now.accelerations[body];
-            self.now.v_dot[at..at + 3].copy_from_slice(&[a.linear.x, a.linear.y, a.angular]);
+        let now = &mut self.now;
+        for (FreeBody { body, .. }, v_dot) in
+            self.layout.free.iter().zip(now.v_dot.as_chunks_mut().0)
+        {
+            let Motion { linear, angular } = now.accelerations[*body];
+            *v_dot = [linear.x, linear.y, angular];
         }
         Ok(())
     }
 
     /// Finds the arms of the joints and Φ_q, as placed.
-    #[inline(always)]
     pub(super) fn reach(&mut self) {
+        self.find_arms();
+        self.find_slopes();
+    }
+
+    #[inline(always)]
+    fn find_arms(&mut self) {
         let now = &mut self.now;
         for (row, arms) in self.layout.constraints.iter().zip(&mut now.arms) {
-            row.constraint.reach(&now.poses, arms, &mut now.jacobian[row.range()]);
+            *arms = row.constraint.arms(&now.poses);
+        }
+    }
+
+    fn find_slopes(&mut self) {
+        let now = &mut self.now;
+        for (row, arms) in self.layout.constraints.iter().zip(&now.arms) {
+            row.constraint.slopes(&now.poses, arms, &mut now.jacobian[row.range()]);
         }
     }
 
@@ -138,18 +153,27 @@ impl<S: Scalar> Mechanism<S> {
 
     /// Forms Φ_q M⁻¹ Φ_qᵀ at the poses as placed.
     fn couple(&mut self) {
-        self.reach();
+        self.find_arms();
+        // revolute joints need no more than arms
+        if !(self.layout.couplings.is_empty() && self.rubbings.is_empty()) {
+            self.find_slopes();
+        }
         let now = &mut self.now;
         let entries = now.matrix.entries_mut();
         entries.fill(S::zero());
-        for coupling in &self.layout.couplings {
-            let Coupling { row, column, sides, at, entry, translation } = *coupling;
-            let (a, b) = (&now.jacobian[row][sides[0]], &now.jacobian[column][sides[1]]);
-            let turning = a[2] * b[2] * self.inverse_masses[at + 2];
-            entries[entry] = entries[entry] + translation + turning;
+        for hinge in &self.layout.hinges {
+            let Hinge { constraints: [of, with], sides, mobility: [mass, inertia], .. } = *hinge;
+            let [first, second] = hinge.entries;
+            let (a, b) = (now.arms[of][sides[0]], now.arms[with][sides[1]]);
+            entries[first[0]] = entries[first[0]] + mass + a.y * b.y * inertia;
+            entries[second[0]] += -(a.x * b.y * inertia);
+            if of != with {
+                entries[first[1]] += -(a.y * b.x * inertia);
+            }
+            entries[second[1]] = entries[second[1]] + mass + a.x * b.x * inertia;
         }
-        for coupling in &self.layout.uneven_couplings {
-            let Coupling { row, column, sides, at, entry, .. } = *coupling;
+        for coupling in &self.layout.couplings {
+            let Coupling { row, column, sides, at, entry } = *coupling;
             let (a, b) = (&now.jacobian[row][sides[0]], &now.jacobian[column][sides[1]]);
             let along = (a[0] * b[0] + a[1] * b[1]) * self.inverse_masses[at];
             let turning = a[2] * b[2] * self.inverse_masses[at + 2];

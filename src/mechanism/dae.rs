@@ -8,7 +8,7 @@
 //! y = (q, v, z, λ); the Jacobian is ∂r/∂y + c_j ∂r/∂ẏ. It is tested against dual numbers, column by
 //! column.
 
-use super::layout::Role;
+use super::layout::{FreeBody, Role};
 use super::{Mechanism, inner_states};
 use crate::clearance::Mode;
 use crate::dae::{Dae, Entries, Fault, State};
@@ -43,7 +43,7 @@ impl<S: Scalar> Mechanism<S> {
         for (row, arms) in self.layout.constraints.iter().zip(&now.arms) {
             let (motions, accelerations) = (&now.motions, &now.accelerations);
             let at = first + row.first;
-            let error = &mut r[at..at + row.constraint.rows()];
+            let error = &mut r[at..at + row.rows];
             let poses = &now.poses;
             row.constraint.acceleration_error(t, arms, poses, motions, accelerations, error);
         }
@@ -57,10 +57,9 @@ impl<S: Scalar> Mechanism<S> {
         self.reach();
         self.now.z.copy_from_slice(z);
         self.now.lambda.copy_from_slice(lambda);
-        for (body, role) in self.layout.roles.iter().enumerate() {
-            let Role::Free(at) = *role else { continue };
+        for FreeBody { body, at, .. } in &self.layout.free {
             let a = &yp[n + at..n + at + 3];
-            self.now.accelerations[body] =
+            self.now.accelerations[*body] =
                 Motion { linear: Vector::new(a[0], a[1]), angular: a[2] };
         }
     }

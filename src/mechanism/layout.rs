@@ -4,10 +4,9 @@
 //! function of time. Every other body has three coordinates (paper, eq. 16 counts them less the
 //! constraints).
 
-use crate::joint::{AngleDrive, Constraint, Derived, MOST_BODIES, Pair, Relation, Travel};
+use crate::joint::{AngleDrive, Constraint, Derived, Pair, Relation, Travel};
 use crate::linear::Symmetric;
 use crate::model::{Complaint, GROUND, KeyPath, Model, Owner};
-use crate::plane::{Pose, Vector};
 use crate::scalar::Scalar;
 
 /// What a body is to the equations.
@@ -40,12 +39,46 @@ pub(super) struct DrivenBody {
 pub(super) struct Row<S> {
     pub constraint: Constraint<S>,
     pub first: usize,
+    /// Number of its rows.
+    pub rows: usize,
     pub owner: Owner,
 }
 
-/// A body with unknowns that two constraint rows share: it couples their multipliers.
+/// A body with unknowns.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Coupling<S> {
+pub(super) struct FreeBody<S> {
+    pub body: usize,
+    /// Its place in q and v.
+    pub at: usize,
+    /// One over its mass (1/kg).
+    pub mass: S,
+    /// One over its inertia (1/(kg m²)).
+    pub inertia: S,
+}
+
+/// A body with unknowns that two revolute joints share, or twice the same: it couples their
+/// multipliers, two by two, by
+/// ```text
+/// ± [ 1/m + a_y b_y/I   − a_y b_x/I     ]
+///   [ − a_x b_y/I         1/m + a_x b_x/I ]
+/// ```
+/// with the arms a and b of both on it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Hinge<S> {
+    /// Their constraints; the second is at most the first.
+    pub constraints: [usize; 2],
+    /// Whether the body is the first (0) or the second (1) of each.
+    pub sides: [usize; 2],
+    /// ±1/m and ±1/I.
+    pub mobility: [S; 2],
+    /// Where the entries of the first row stand in Φ_q M⁻¹ Φ_qᵀ, and those of the second. Of a joint
+    /// with itself the second of the first row is above the diagonal, and not wanted.
+    pub entries: [[usize; 2]; 2],
+}
+
+/// A body with unknowns that two constraint rows of other kinds share.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Coupling {
     pub row: usize,
     /// At most `row`.
     pub column: usize,
@@ -55,16 +88,13 @@ pub(super) struct Coupling<S> {
     pub at: usize,
     /// Where the entry that it adds to stands in Φ_q M⁻¹ Φ_qᵀ.
     pub entry: usize,
-    /// What its translation adds to the entry (1/kg), wherever it stands; zero where that is not a
-    /// constant.
-    pub translation: S,
 }
 
 impl<S: Scalar> Row<S> {
     /// Places of its rows among the multipliers.
     #[inline(always)]
     pub fn range(&self) -> std::ops::Range<usize> {
-        self.first..self.first + self.constraint.rows()
+        self.first..self.first + self.rows
     }
 }
 
@@ -75,11 +105,12 @@ pub(super) struct Layout<S> {
     pub roles: Vec<Role>,
     /// Each after its base.
     pub driven: Vec<DrivenBody>,
+    pub free: Vec<FreeBody<S>>,
     pub constraints: Vec<Row<S>>,
-    /// Of rows whose coefficients at ẋ and ẏ are constants.
-    pub couplings: Vec<Coupling<S>>,
-    /// Of the other rows.
-    pub uneven_couplings: Vec<Coupling<S>>,
+    /// Of revolute joints with each other.
+    pub hinges: Vec<Hinge<S>>,
+    /// Of all other constraints.
+    pub couplings: Vec<Coupling>,
     /// Φ_q M⁻¹ Φ_qᵀ, with the pattern that these have.
     pub matrix: Symmetric<S>,
     /// Number n of coordinates.
@@ -114,9 +145,9 @@ impl<S: Scalar> Layout<S> {
             if constraint.bodies().iter().all(|body| !matches!(roles[*body], Role::Free(_))) {
                 complaints.push(prescribed_twice(model, owner));
             }
-            let first = rows;
-            rows += constraint.rows();
-            constraints.push(Row { constraint, first, owner });
+            let (first, own) = (rows, constraint.rows());
+            rows += own;
+            constraints.push(Row { constraint, first, rows: own, owner });
         }
         if complaints.is_empty() && rows > coordinates {
             complaints.push(Complaint {
@@ -130,19 +161,27 @@ impl<S: Scalar> Layout<S> {
         }
         match complaints.is_empty() {
             true => {
-                let (mut couplings, mut uneven_couplings) =
-                    couplings(&constraints, &roles, model.masses());
-                let both = || couplings.iter().chain(&uneven_couplings);
-                let matrix = Symmetric::new(rows, both().map(|both| (both.row, both.column)));
-                for both in couplings.iter_mut().chain(&mut uneven_couplings) {
-                    both.entry = matrix.place(both.row, both.column);
-                }
+                let shared = shared(&constraints, &roles);
+                let matrix = Symmetric::new(rows, shared.iter().flat_map(Shared::entries));
+                let hinges = shared.iter().filter_map(|shared| shared.hinge(model, &matrix));
+                let couplings = shared.iter().filter(|shared| !shared.are_revolute());
+                let couplings = couplings.flat_map(|shared| shared.couplings(&matrix));
+                let free = roles.iter().enumerate().filter_map(|(body, role)| match role {
+                    Role::Free(at) => Some(FreeBody {
+                        body,
+                        at: *at,
+                        mass: S::one() / model.masses()[body],
+                        inertia: S::one() / model.inertias()[body],
+                    }),
+                    _ => None,
+                });
                 Ok(Layout {
+                    free: free.collect(),
+                    hinges: hinges.collect(),
+                    couplings: couplings.collect(),
                     roles,
                     driven,
                     constraints,
-                    couplings,
-                    uneven_couplings,
                     matrix,
                     coordinates,
                     rows,
@@ -159,42 +198,71 @@ impl<S: Scalar> Layout<S> {
     }
 }
 
-/// Which rows share which bodies, lower triangle: those with constant coefficients at ẋ and ẏ, and
-/// the others.
-fn couplings<S: Scalar>(
-    constraints: &[Row<S>],
-    roles: &[Role],
-    masses: &[S],
-) -> (Vec<Coupling<S>>, Vec<Coupling<S>>) {
-    let poses = vec![Pose::fixed(); roles.len()];
-    let mut sides_of = vec![Vec::new(); roles.len()];
-    let mut all = Vec::new();
-    for row in constraints {
-        let mut slopes = vec![[[S::zero(); 3]; MOST_BODIES]; row.constraint.rows()];
-        if row.constraint.moves_evenly() {
-            row.constraint.reach(&poses, &mut [Vector::zero(); 2], &mut slopes);
-        }
+/// A body with unknowns that two constraints share, or twice the same.
+struct Shared<'a, S> {
+    body: usize,
+    at: usize,
+    /// Their numbers; the second is at most the first.
+    numbers: [usize; 2],
+    constraints: [&'a Row<S>; 2],
+    sides: [usize; 2],
+}
+
+/// Which constraints share which bodies.
+fn shared<'a, S: Scalar>(constraints: &'a [Row<S>], roles: &[Role]) -> Vec<Shared<'a, S>> {
+    let mut on = vec![Vec::new(); roles.len()];
+    for (number, row) in constraints.iter().enumerate() {
         for (side, body) in row.constraint.bodies().into_iter().enumerate() {
-            for (r, blocks) in slopes.iter().enumerate() {
-                let along = Vector::new(blocks[side][0], blocks[side][1]);
-                let (row, evenly) = (row.first + r, row.constraint.moves_evenly());
-                all.push((body, row, side, along, evenly));
-                sides_of[body].push((row, side, along, evenly));
+            on[body].push((number, side));
+        }
+    }
+    let mut all = Vec::new();
+    for (number, row) in constraints.iter().enumerate() {
+        for (side, body) in row.constraint.bodies().into_iter().enumerate() {
+            let Role::Free(at) = roles[body] else { continue };
+            for &(other, across) in on[body].iter().filter(|(other, _)| *other <= number) {
+                let (numbers, constraints) = ([number, other], [row, &constraints[other]]);
+                all.push(Shared { body, at, numbers, constraints, sides: [side, across] });
             }
         }
     }
-    let (mut even, mut uneven) = (Vec::new(), Vec::new());
-    for (body, row, side, along, evenly) in all {
-        let Role::Free(at) = roles[body] else { continue };
-        let shares = sides_of[body].iter().filter(|(column, ..)| *column <= row);
-        for &(column, other, across, also) in shares {
-            let list = if evenly && also { &mut even } else { &mut uneven };
-            let translation = along.dot(across) / masses[body];
-            let sides = [side, other];
-            list.push(Coupling { row, column, sides, at, entry: 0, translation });
-        }
+    all
+}
+
+impl<S: Scalar> Shared<'_, S> {
+    /// The entries of the lower triangle that it adds to, by row and column.
+    fn entries(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
+        let [rows, columns] = self.constraints.map(Row::range);
+        rows.flat_map(move |row| columns.clone().map(move |column| (row, column)))
+            .filter(|(row, column)| column <= row)
     }
-    (even, uneven)
+
+    fn are_revolute(&self) -> bool {
+        self.constraints.iter().all(|row| matches!(row.constraint, Constraint::Revolute(_)))
+    }
+
+    /// The coupling of revolute joints.
+    fn hinge(&self, model: &Model<S>, matrix: &Symmetric<S>) -> Option<Hinge<S>> {
+        if !self.are_revolute() {
+            return None;
+        }
+        let [of, with] = self.constraints.map(|row| row.first);
+        let place = |row: usize, column: usize| matrix.place(row.max(column), row.min(column));
+        let entries = [0, 1].map(|r| [0, 1].map(|c| place(of + r, with + c)));
+        let sign = if self.sides[0] == self.sides[1] { S::one() } else { -S::one() };
+        let mobility = [model.masses()[self.body], model.inertias()[self.body]];
+        let mobility = mobility.map(|inertia| sign / inertia);
+        Some(Hinge { constraints: self.numbers, sides: self.sides, mobility, entries })
+    }
+
+    /// The couplings of the rows of other constraints.
+    fn couplings(&self, matrix: &Symmetric<S>) -> impl Iterator<Item = Coupling> {
+        let (sides, at) = (self.sides, self.at);
+        self.entries().map(move |(row, column)| {
+            let entry = matrix.place(row, column);
+            Coupling { row, column, sides, at, entry }
+        })
+    }
 }
 
 fn prescribed_twice<S: Scalar>(model: &Model<S>, owner: Owner) -> Complaint {

@@ -1,7 +1,7 @@
 //! Poses and motions of every body, from time, coordinates and velocities.
 
 use super::Mechanism;
-use super::layout::Role;
+use super::layout::FreeBody;
 use crate::dae::{State, Turn};
 use crate::plane::{Motion, Pose, Vector};
 use crate::scalar::Scalar;
@@ -12,18 +12,23 @@ impl<S: Scalar> Mechanism<S> {
     pub(super) fn place(&mut self, state: &State<'_, S>) {
         self.now.time = state.time;
         let turns = state.carried.map(|carried| carried.turns);
-        self.now.offsets.clear();
-        self.now.offsets.extend(state.carried.iter().flat_map(|carried| carried.offsets));
+        let offsets = state.carried.map_or(&[][..], |carried| carried.offsets);
+        self.now.offsets.resize(offsets.len(), Vector::zero());
+        for (offset, [x, y]) in self.now.offsets.iter_mut().zip(offsets) {
+            *offset = Vector::new(*x, *y);
+        }
         self.place_driven(state.time, turns);
-        for (body, role) in self.layout.roles.iter().enumerate() {
-            let Role::Free(at) = *role else { continue };
-            let (q, v) = (&state.q[at..at + 3], &state.v[at..at + 3]);
-            let position = Vector::new(q[0], q[1]);
-            self.now.poses[body] = match turns {
-                Some(turns) => with_turn(position, q[2], turns[body - 1]),
-                None => Pose::new(position, q[2]),
+        let states = state.q.as_chunks().0.iter().zip(state.v.as_chunks().0);
+        for (FreeBody { body, .. }, ([x, y, angle], [x_rate, y_rate, rate])) in
+            self.layout.free.iter().zip(states)
+        {
+            let position = Vector::new(*x, *y);
+            self.now.poses[*body] = match turns {
+                Some(turns) => with_turn(position, *angle, turns[*body - 1]),
+                None => Pose::new(position, *angle),
             };
-            self.now.motions[body] = Motion { linear: Vector::new(v[0], v[1]), angular: v[2] };
+            self.now.motions[*body] =
+                Motion { linear: Vector::new(*x_rate, *y_rate), angular: *rate };
         }
     }
 
@@ -46,10 +51,7 @@ impl<S: Scalar> Mechanism<S> {
                 None => {
                     let (sin, cos) = course.wrapped(time).sin_cos();
                     let sin = sign * sin;
-                    Turn {
-                        cos: base.cos * cos - base.sin * sin,
-                        sin: base.sin * cos + base.cos * sin,
-                    }
+                    [base.cos * cos - base.sin * sin, base.sin * cos + base.cos * sin]
                 }
             };
             let rate = motion.angular + sign * turning;
@@ -74,11 +76,8 @@ impl<S: Scalar> Mechanism<S> {
 
     /// Angles of every body but the ground (rad).
     pub(super) fn angles(&self, time: S, q: &[S], angles: &mut [S]) {
-        let mut of = |body: usize, angle: S| angles[body - 1] = angle;
-        for (body, role) in self.layout.roles.iter().enumerate() {
-            if let Role::Free(at) = *role {
-                of(body, q[at + 2]);
-            }
+        for FreeBody { body, at, .. } in &self.layout.free {
+            angles[body - 1] = q[at + 2];
         }
         for driven in &self.layout.driven {
             let base = if driven.base == 0 { S::zero() } else { angles[driven.base - 1] };
@@ -89,10 +88,8 @@ impl<S: Scalar> Mechanism<S> {
 
     /// Angular rates of every body but the ground (rad/s).
     pub(super) fn angular_rates(&self, time: S, v: &[S], rates: &mut [S]) {
-        for (body, role) in self.layout.roles.iter().enumerate() {
-            if let Role::Free(at) = *role {
-                rates[body - 1] = v[at + 2];
-            }
+        for FreeBody { body, at, .. } in &self.layout.free {
+            rates[body - 1] = v[at + 2];
         }
         for driven in &self.layout.driven {
             let rate = self.model.drives()[driven.drive].course.rate(time);
@@ -102,6 +99,6 @@ impl<S: Scalar> Mechanism<S> {
     }
 }
 
-fn with_turn<S: Scalar>(position: Vector<S>, angle: S, turn: Turn<S>) -> Pose<S> {
-    Pose { position, angle, cos: turn.cos, sin: turn.sin }
+fn with_turn<S: Scalar>(position: Vector<S>, angle: S, [cos, sin]: Turn<S>) -> Pose<S> {
+    Pose { position, angle, cos, sin }
 }

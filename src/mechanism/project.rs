@@ -4,7 +4,7 @@
 //! ```
 
 use super::Mechanism;
-use super::layout::Role;
+use super::layout::{FreeBody, Role};
 use crate::clearance::Mode;
 use crate::dae::{Fault, State};
 use crate::linear;
@@ -193,12 +193,11 @@ impl<S: Scalar> Mechanism<S> {
         self.now.matrix.solve(&mut self.now.lambda);
         self.now.wrenches.fill(Wrench::none());
         self.apply_multipliers();
-        for (body, role) in self.layout.roles.iter().enumerate() {
-            let Role::Free(at) = *role else { continue };
-            let Wrench { force, moment } = self.now.wrenches[body];
-            for (c, change) in [force.x, force.y, moment].into_iter().enumerate() {
-                x[at + c] += change * self.inverse_masses[at + c];
-            }
+        for FreeBody { body, at, mass, inertia } in &self.layout.free {
+            let Wrench { force, moment } = self.now.wrenches[*body];
+            x[*at] += force.x * *mass;
+            x[at + 1] += force.y * *mass;
+            x[at + 2] += moment * *inertia;
         }
         Ok(())
     }

@@ -27,7 +27,6 @@ use crate::dae::{Fault, State, System};
 use crate::joint::{Blocks, Constraint, MOST_BODIES, MOST_ROWS, Revolute};
 use crate::linear::{self, Cascade, nearest};
 use crate::model::{Complaint, KeyPath, Owner, Start};
-use crate::plane::Vector;
 use crate::scalar::Scalar;
 
 /// Speeds and rates less than this share of others, or than this many rad/s, are none.
@@ -262,6 +261,7 @@ impl<S: Scalar> Mechanism<S> {
             .map(|clearance| Row {
                 constraint: Constraint::Revolute(Revolute { pair: clearance.pair }),
                 first: 0,
+                rows: 2,
                 owner: Owner::Joint(0),
             })
             .collect()
@@ -475,9 +475,9 @@ impl<S: Scalar> Mechanism<S> {
 
     /// Φ_q of a constraint, row by row: coordinates and coefficients.
     fn coefficients(&self, constraint: &Constraint<S>) -> Vec<Vec<(usize, S)>> {
-        let mut arms = [Vector::zero(); 2];
+        let arms = constraint.arms(&self.now.poses);
         let mut rows = vec![[[S::zero(); 3]; MOST_BODIES]; constraint.rows()];
-        constraint.reach(&self.now.poses, &mut arms, &mut rows);
+        constraint.slopes(&self.now.poses, &arms, &mut rows);
         let written = |blocks: &Blocks<S>| {
             let mut coefficients: Vec<(usize, S)> = Vec::new();
             for (body, block) in constraint.bodies().into_iter().zip(blocks) {

@@ -2,7 +2,7 @@
 
 use super::layout::Role;
 use super::{Mechanism, inner_states};
-use crate::clearance::{Bodies, Clearance, Gap, Mode};
+use crate::clearance::{Bodies, Clearance, EventSlot, Gap, Mode};
 use crate::contact::Penetration;
 use crate::dae::{Course, Fault, State, System, Watch};
 use crate::halt::{self, Halted};
@@ -140,6 +140,9 @@ impl<S: Scalar> System<S> for Mechanism<S> {
         };
         let clearance = &self.model.clearances()[k];
         let now = &self.now;
+        if let (EventSlot::Depth, Some(touch)) = (what, &now.touches[k]) {
+            return clearance.depth_event_rate(&touch.rates);
+        }
         let (gap, rates) = match &now.touches[k] {
             Some(touch) => (touch.gap, touch.rates),
             None => {
@@ -148,7 +151,7 @@ impl<S: Scalar> System<S> for Mechanism<S> {
             }
         };
         let second = match what {
-            crate::clearance::EventSlot::Depth => (S::zero(), S::zero()),
+            EventSlot::Depth => (S::zero(), S::zero()),
             _ => clearance.second_rates(&gap, &rates, &now.motions, &now.accelerations),
         };
         let inner = inner_states(&now.z, &self.inner_places[k]);
@@ -297,11 +300,8 @@ impl<S: Scalar> Mechanism<S> {
         [at_i, at_j, gap.arm_i, gap.arm_j].into_iter().fold(0.0, |sum, x| sum + x.norm().to_f64())
     }
 
-    /// The bodies without unknowns.
+    /// The bodies with unknowns, and their places in q and v.
     pub(super) fn free_bodies(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
-        self.layout.roles.iter().enumerate().filter_map(|(body, role)| match role {
-            Role::Free(at) => Some((body, *at)),
-            _ => None,
-        })
+        self.layout.free.iter().map(|free| (free.body, free.at))
     }
 }

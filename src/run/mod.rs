@@ -45,6 +45,8 @@ use witness::{Bounds, Witness};
 /// Drift off the constraints that has the state projected and the engine restarted, over the
 /// mechanism's characteristic length.
 const DRIFT: f64 = 5e-12;
+/// The same in units of the tolerance, where that is more and no penetration is a part as small.
+const DRIFT_ERRORS: f64 = 5.0;
 /// Off by so many roundings of the largest coordinate is no drift: far from the origin no
 /// projection comes nearer.
 const DRIFT_ROUNDINGS: f64 = 64.0;
@@ -556,7 +558,8 @@ where
         let (system, q) = (self.engine.system(), &self.scratch.q);
         let sizes = q.iter().zip(system.scales().0).map(|(q, size)| q.abs().to_f64() / size);
         let rounding = DRIFT_ROUNDINGS * S::EPSILON * sizes.fold(0.0, f64::max);
-        if drift > rounding.max(DRIFT) * system.length() {
+        let errors = if self.touching.is_empty() { DRIFT_ERRORS * self.tolerance } else { 0.0 };
+        if drift > rounding.max(DRIFT).max(errors) * system.length() {
             self.withdraw()?;
             let state = self.scratch.clone();
             self.restart(&state)?;

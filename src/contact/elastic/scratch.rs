@@ -11,14 +11,13 @@ use crate::scalar::Scalar;
 pub const KIND: Kind = Kind {
     word: "hardening",
     title: "a spring that hardens",
-    source: "",
     example: r#"[joints.A.clearance]
 normal = { law = "hertz", elastic = "hardening", stiffness = 1e7, depth = 1e-4 }"#,
     keys: &[
         Key::new("stiffness", Takes::Number(Range::Positive), "N/m", "stiffness K where the contact begins"),
         Key::new("depth", Takes::Number(Range::Positive), "m", "depth δ_1 at which the force is twice that of the spring"),
     ],
-    also: None,
+    ..Kind::PLAIN
 };
 
 /// K (N/m) and δ_1 (m).

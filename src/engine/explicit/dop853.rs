@@ -1,5 +1,5 @@
 //! Coefficients of the eighth-order method of Dormand and Prince with the error estimators of
-//! fifth and third order: E. Hairer, S. P. Nørsett, G. Wanner, *Solving Ordinary Differential
+//! fifth and third order and the dense output of seventh: E. Hairer, S. P. Nørsett, G. Wanner, *Solving Ordinary Differential
 //! Equations I*, 2nd ed., Springer 1993, Section II.5 and the program DOP853 in its appendix;
 //! rounded here to double precision, for which alone they serve.
 
@@ -97,6 +97,107 @@ pub(super) const THIRD: Row = &[
     (11, 0.022651792198360825),
 ];
 
+/// Number of stages that the dense output has beside those of the step, the rates at its end first.
+pub(super) const EXTRA_STAGES: usize = 1 + EXTRA.len();
+
+/// The stages that the dense output wants behind the rates at the step's end, which are stage 12.
+pub(super) const EXTRA: [Row; 3] = [
+    &[
+        (0, 0.056167502283047954),
+        (6, 0.25350021021662483),
+        (7, -0.2462390374708025),
+        (8, -0.12419142326381637),
+        (9, 0.15329179827876568),
+        (10, 0.00820105229563469),
+        (11, 0.007567897660545699),
+        (12, -0.008298),
+    ],
+    &[
+        (0, 0.03183464816350214),
+        (5, 0.028300909672366776),
+        (6, 0.053541988307438566),
+        (7, -0.05492374857139099),
+        (10, -0.00010834732869724932),
+        (11, 0.0003825710908356584),
+        (12, -0.00034046500868740456),
+        (13, 0.1413124436746325),
+    ],
+    &[
+        (0, -0.42889630158379194),
+        (5, -4.697621415361164),
+        (6, 7.683421196062599),
+        (7, 4.06898981839711),
+        (8, 0.3567271874552811),
+        (12, -0.0013990241651590145),
+        (13, 2.9475147891527724),
+        (14, -9.15095847217987),
+    ],
+];
+
+/// Weights of the last four terms of the dense output
+/// ```text
+/// y(x) = y₀ + x (p₀ + (1 − x) (p₁ + x (p₂ + (1 − x) (p₃ + x (p₄ + (1 − x) (p₅ + x p₆))))))
+/// ```
+/// whose first three follow from values and rates at both ends; x is the share of the step.
+pub(super) const DENSE: [Row; 4] = [
+    &[
+        (0, -8.428938276109013),
+        (5, 0.5667149535193777),
+        (6, -3.0689499459498917),
+        (7, 2.38466765651207),
+        (8, 2.117034582445028),
+        (9, -0.871391583777973),
+        (10, 2.2404374302607883),
+        (11, 0.6315787787694688),
+        (12, -0.08899033645133331),
+        (13, 18.148505520854727),
+        (14, -9.194632392478356),
+        (15, -4.436036387594894),
+    ],
+    &[
+        (0, 10.427508642579134),
+        (5, 242.28349177525817),
+        (6, 165.20045171727028),
+        (7, -374.5467547226902),
+        (8, -22.113666853125306),
+        (9, 7.733432668472264),
+        (10, -30.674084731089398),
+        (11, -9.332130526430229),
+        (12, 15.697238121770845),
+        (13, -31.139403219565178),
+        (14, -9.35292435884448),
+        (15, 35.81684148639408),
+    ],
+    &[
+        (0, 19.985053242002433),
+        (5, -387.0373087493518),
+        (6, -189.17813819516758),
+        (7, 527.8081592054236),
+        (8, -11.57390253995963),
+        (9, 6.8812326946963),
+        (10, -1.0006050966910838),
+        (11, 0.7777137798053443),
+        (12, -2.778205752353508),
+        (13, -60.19669523126412),
+        (14, 84.32040550667716),
+        (15, 11.99229113618279),
+    ],
+    &[
+        (0, -25.69393346270375),
+        (5, -154.18974869023643),
+        (6, -231.5293791760455),
+        (7, 357.6391179106141),
+        (8, 93.40532418362432),
+        (9, -37.45832313645163),
+        (10, 104.0996495089623),
+        (11, 29.8402934266605),
+        (12, -43.53345659001114),
+        (13, 96.32455395918828),
+        (14, -39.17726167561544),
+        (15, -149.72683625798564),
+    ],
+];
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -133,6 +234,35 @@ mod tests {
         for power in 0..8 {
             let sum: f64 = WEIGHTS.iter().map(|(j, b)| b * node(*j).powi(power)).sum();
             assert!((sum * f64::from(power + 1) - 1.0).abs() < 1e-13, "{power}: {sum}");
+        }
+    }
+
+    /// Places of the extra stages.
+    const EXTRA_NODES: [f64; 3] = [0.1, 0.2, 7.0 / 9.0];
+
+    #[test]
+    fn the_dense_output_is_exact_for_powers_up_to_the_seventh() {
+        for (row, node) in EXTRA.iter().zip(EXTRA_NODES) {
+            assert!((sum(row) - node).abs() < 1e-14, "{node}");
+        }
+        // of y = x^k with the rates k x^(k − 1)
+        let node = |j: usize| match j {
+            0 => 0.0,
+            1..=11 => NODES[j - 1],
+            12 => 1.0,
+            _ => EXTRA_NODES[j - 13],
+        };
+        for k in 1..=7 {
+            let rate = |x: f64| f64::from(k) * x.powi(k - 1);
+            let rows = DENSE.map(|row| row.iter().map(|(j, w)| w * rate(node(*j))).sum::<f64>());
+            let ends = [1.0, rate(0.0) - 1.0, 2.0 - rate(0.0) - rate(1.0)];
+            for x in [0.1, 0.45, 0.8] {
+                let terms = ends.iter().chain(&rows).rev().enumerate();
+                // x stands before p₆, p₄, …, 1 − x before p₅, p₃, p₁
+                let y =
+                    terms.fold(0.0, |y, (at, p)| (y + p) * if at % 2 == 0 { x } else { 1.0 - x });
+                assert!((y - x.powi(k)).abs() < 1e-12, "{k} at {x}: {y}");
+            }
         }
     }
 

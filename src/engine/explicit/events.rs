@@ -2,7 +2,7 @@
 
 use super::flow::Gauge;
 use super::stepper::{Stepper, two_sum};
-use super::{Explicit, ExplicitError};
+use super::{Drawing, Explicit, ExplicitError};
 use crate::dae::{Advance, Fault, System};
 use crate::engine::guard::{Found, Look, first_rise};
 use crate::scalar::Scalar;
@@ -169,6 +169,7 @@ impl<S: Scalar, Y: System<S>> Explicit<S, Y> {
                 break;
             };
             self.length = self.land(target, bracket, guess)?;
+            self.drawing = Drawing::Absent;
             std::mem::swap(&mut self.here, &mut self.probe);
             self.touch_down(target).map_err(|fault| self.fault(fault))?;
             landed = Some(target);
@@ -367,7 +368,7 @@ impl<S: Scalar, Y: System<S>> Explicit<S, Y> {
         let tolerance = self.options.tolerance;
         let mut accuracy = tolerance.max(ROUGH);
         let course = loop {
-            self.partial(place, accuracy)?;
+            self.look_in(place, accuracy)?;
             let evaluated = self.flow.evaluate(&self.probe.y);
             evaluated
                 .map_err(|source| ExplicitError::System { time: self.step_begin(), source })?;

@@ -18,7 +18,7 @@
 //! number of contacts at once. Where two roots are zero together the flow stands still, and it
 //! creeps where they tend to zero together; the engine steps over both.
 
-use crate::dae::{Carried, Course, Direction, Fault, State, System, Turn, Watch};
+use crate::dae::{Carried, Course, Direction, Fault, State, System, Watch};
 use crate::plane::Vector;
 use crate::scalar::Scalar;
 
@@ -72,7 +72,6 @@ pub(super) struct Flow<S, Y> {
     root_values: Vec<Option<S>>,
     root_rates: Vec<S>,
     pace: S,
-    turns: Vec<Turn<S>>,
     turn_rates: Vec<S>,
     angles: Vec<S>,
     offsets: Vec<Vector<S>>,
@@ -86,7 +85,6 @@ impl<S: Scalar, Y: System<S>> Flow<S, Y> {
     pub fn new(system: Y, exact: bool) -> Self {
         let (frames, functions) = (system.turns(), system.watches().len());
         let offsets = if exact && S::EPSILON >= f64::EPSILON { system.offsets() } else { 0 };
-        let turn = Turn { cos: S::one(), sin: S::zero() };
         Flow {
             coordinates: system.coordinates(),
             inner_states: system.inner_states(),
@@ -97,7 +95,6 @@ impl<S: Scalar, Y: System<S>> Flow<S, Y> {
             root_values: vec![None; functions],
             root_rates: vec![S::zero(); functions],
             pace: S::one(),
-            turns: vec![turn; frames],
             turn_rates: vec![S::zero(); frames],
             angles: vec![S::zero(); frames],
             offsets: vec![Vector::zero(); offsets],
@@ -191,48 +188,40 @@ impl<S: Scalar, Y: System<S>> Flow<S, Y> {
     /// Sets the offsets from coordinates and turns.
     pub fn reset_offsets(&mut self, y: &mut [S]) {
         let first = self.first_offset();
-        self.load(y);
-        let carried = Some(Carried { turns: &self.turns, offsets: &[] });
-        let state = State { carried, ..self.state(y) };
+        let mut state = self.state(y);
+        if let Some(carried) = &mut state.carried {
+            carried.offsets = &[];
+        }
         self.system.offsets_at(state, &mut self.offsets);
         for (offset, pair) in self.offsets.iter().zip(y[first..].chunks_exact_mut(2)) {
             pair.copy_from_slice(&[offset.x, offset.y]);
         }
     }
 
-    /// The state in y, without what is carried.
+    /// The state in y, with what is carried.
+    #[inline(always)]
     fn state<'a>(&self, y: &'a [S]) -> State<'a, S> {
         let n = self.coordinates;
-        let (q, v, z) = (&y[..n], &y[n..2 * n], &y[2 * n..self.first_turn()]);
-        State { time: y[self.time()], q, v, z, carried: None }
-    }
-
-    /// Takes turns and offsets from y.
-    fn load(&mut self, y: &[S]) {
-        let (first_turn, first_offset) = (self.first_turn(), self.first_offset());
-        for (turn, pair) in self.turns.iter_mut().zip(y[first_turn..].chunks_exact(2)) {
-            *turn = Turn { cos: pair[0], sin: pair[1] };
-        }
-        for (offset, pair) in self.offsets.iter_mut().zip(y[first_offset..].chunks_exact(2)) {
-            *offset = Vector::new(pair[0], pair[1]);
-        }
+        let (first_turn, first_offset, time) =
+            (self.first_turn(), self.first_offset(), self.time());
+        let carried = Carried {
+            turns: y[first_turn..first_offset].as_chunks().0,
+            offsets: y[first_offset..time].as_chunks().0,
+        };
+        let (q, v, z) = (&y[..n], &y[n..2 * n], &y[2 * n..first_turn]);
+        State { time: y[time], q, v, z, carried: Some(carried) }
     }
 
     /// Evaluates the system at q, v, t and the turns of y alone, for its event rates.
     pub fn evaluate_without_roots(&mut self, y: &[S]) -> Result<(), Fault> {
         self.evaluations += 1;
-        self.load(y);
-        let carried = Some(Carried { turns: &self.turns, offsets: &self.offsets });
-        let state = State { carried, ..self.state(y) };
-        self.system.evaluate(state)
+        self.system.evaluate(self.state(y))
     }
 
     /// Evaluates the system at y; everything below answers for it.
     pub fn evaluate(&mut self, y: &[S]) -> Result<(), Fault> {
         self.evaluations += 1;
-        self.load(y);
-        let carried = Some(Carried { turns: &self.turns, offsets: &self.offsets });
-        let state = State { carried, ..self.state(y) };
+        let state = self.state(y);
         self.system.turn_rates(state.time, state.v, &mut self.turn_rates);
         if self.roots.is_empty() {
             self.pace = S::one();
@@ -292,44 +281,45 @@ impl<S: Scalar, Y: System<S>> Flow<S, Y> {
         sum
     }
 
-    /// Hands out `scale` · dy/dτ, component by component.
+    /// Hands out `scale` · dy/dτ: each component with its place in `to`.
     #[inline(always)]
-    fn spread(&self, y: &[S], scale: S, mut put: impl FnMut(usize, S)) {
-        let (n, time) = (self.coordinates, self.time());
+    fn spread(&self, y: &[S], scale: S, to: &mut [S], put: impl Fn(&mut S, S)) {
+        let n = self.coordinates;
         let paced = if self.roots.is_empty() { scale } else { scale * self.pace };
-        for (i, v) in y[n..2 * n].iter().enumerate() {
-            put(i, paced * *v);
-        }
-        for (i, a) in self.system.accelerations()[..n].iter().enumerate() {
-            put(n + i, paced * *a);
-        }
-        for (i, rate) in self.system.inner_rates()[..self.inner_states].iter().enumerate() {
-            put(2 * n + i, paced * *rate);
-        }
-        let first = self.first_turn();
-        for (j, (turn, rate)) in self.turns.iter().zip(&self.turn_rates).enumerate() {
+        let (positions, to) = to.split_at_mut(n);
+        let (velocities, to) = to.split_at_mut(n);
+        let (inner, to) = to.split_at_mut(self.inner_states);
+        let (turns, to) = to.split_at_mut(2 * self.frames);
+        let (offsets, to) = to.split_at_mut(2 * self.offset_rates.len());
+        let (time, to) = to.split_at_mut(1);
+        let (roots, integrals) = to.split_at_mut(self.roots.len());
+        let each = |to: &mut [S], rates: &[S]| {
+            to.iter_mut().zip(rates).for_each(|(to, rate)| put(to, paced * *rate));
+        };
+        each(positions, &y[n..]);
+        each(velocities, self.system.accelerations());
+        each(inner, self.system.inner_rates());
+        let carried = y[self.first_turn()..].as_chunks().0.iter().zip(&self.turn_rates);
+        for ([cos, sin], ([own_cos, own_sin], rate)) in
+            turns.as_chunks_mut().0.iter_mut().zip(carried)
+        {
             let rate = paced * *rate;
-            put(first + 2 * j, -(rate * turn.sin));
-            put(first + 2 * j + 1, rate * turn.cos);
+            put(cos, -(rate * *own_sin));
+            put(sin, rate * *own_cos);
         }
-        let first = self.first_offset();
-        for (j, rate) in self.offset_rates.iter().enumerate() {
-            put(first + 2 * j, paced * rate.x);
-            put(first + 2 * j + 1, paced * rate.y);
+        let offsets = offsets.as_chunks_mut().0;
+        for ([x, y], rate) in offsets.iter_mut().zip(&self.offset_rates) {
+            put(x, paced * rate.x);
+            put(y, paced * rate.y);
         }
-        put(time, paced);
-        for (slot, rate) in self.root_rates[..self.roots.len()].iter().enumerate() {
-            put(time + 1 + slot, scale * *rate);
-        }
-        let first = self.controlled();
-        for (i, power) in self.system.powers()[..self.integrals].iter().enumerate() {
-            put(first + i, paced * *power);
-        }
+        put(&mut time[0], paced);
+        roots.iter_mut().zip(&self.root_rates).for_each(|(to, rate)| put(to, scale * *rate));
+        each(integrals, self.system.powers());
     }
 
     /// dy/dτ at y, the place last evaluated.
     pub fn rates_here(&self, y: &[S], rates: &mut [S]) {
-        self.spread(y, S::one(), |i, rate| rates[i] = rate);
+        self.spread(y, S::one(), rates, |to, rate| *to = rate);
     }
 
     /// dy/dτ at y.
@@ -342,16 +332,13 @@ impl<S: Scalar, Y: System<S>> Flow<S, Y> {
     /// Adds `step` · dy/dτ at y to `sum`.
     pub fn add_rates(&mut self, y: &[S], step: S, sum: &mut [S]) -> Result<(), Fault> {
         self.evaluate(y)?;
-        self.spread(y, step, |i, rate| sum[i] += rate);
+        self.spread(y, step, sum, |to, rate| *to += rate);
         Ok(())
     }
 
     /// Event functions at y, as the system has them.
     pub fn event_values(&mut self, y: &[S]) -> Result<&[S], Fault> {
-        self.load(y);
-        let carried = Some(Carried { turns: &self.turns, offsets: &self.offsets });
-        let state = State { carried, ..self.state(y) };
-        self.system.event_values(state, &mut self.values)?;
+        self.system.event_values(self.state(y), &mut self.values)?;
         Ok(&self.values)
     }
 

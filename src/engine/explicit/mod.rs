@@ -12,8 +12,12 @@
 //!   next.
 //! - **Events** are met by steps that end on them: Newton on the length of the step, with partial
 //!   steps that grow as accurate as the iteration needs them. No interpolant comes near the state.
-//!   That a step holds no other event is proven by bounds ([`guard`](super::guard)), with partial
-//!   steps wherever those at its ends do not settle it.
+//!   That a step holds no other event is proven by bounds ([`guard`](super::guard)), with looks
+//!   wherever those at its ends do not settle it.
+//! - **Looks** into a step, for events and summits, read the method's dense output at middling
+//!   tolerances, where it is as true as the step: four right-hand sides in place of twelve a look, one
+//!   of which tells whether it is. Without one, and at the tightest and the loosest tolerances, they
+//!   are partial steps. So are samples and sections at any.
 //! - **Errors** are weighed by component: the largest, in units of the size that
 //!   [`System::scales`] gives it, or of its own magnitude where that is larger by more than
 //!   rounding allows for. Integrals follow without a say.
@@ -51,6 +55,12 @@ const PATIENCE: u32 = 100;
 /// Up to this tolerance partial steps from either end of a step lead to the same places as far as
 /// anybody sees; beyond, all are taken from its begin.
 const TIGHT: f64 = 1e-10;
+/// Between these tolerances looks for events and summits read the dense output. Tighter, what that is
+/// off by begins to show (some 1e-13 of a peak force); looser, partial steps are truer than the
+/// tolerance asks for, and what friction and gaps make of an error counts many times itself.
+const TIGHTEST: f64 = 5e-13;
+/// See [`TIGHTEST`].
+const LOOSE: f64 = 1e-8;
 
 /// Steps over the relaxation of inner states, at most, where numbers carry a derivative: no error tells
 /// of a derivative that a step beyond the method's stability (some 6) makes larger and larger.
@@ -95,12 +105,26 @@ impl Default for Options {
     }
 }
 
+/// How far the dense output of the last step is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Drawing {
+    /// The stages of the step are gone.
+    Absent,
+    /// The stages are there.
+    Begun,
+    /// It is there, and as true as the step.
+    Done,
+    /// It is not as true as the step.
+    Doubtful,
+}
+
 /// Counts of work.
 #[derive(Debug, Clone, Copy, Default)]
 struct Tally {
     steps: u64,
     rejected: u64,
     partial: u64,
+    drawn: u64,
     events: u64,
     restarts: u64,
     unproven: u64,
@@ -125,6 +149,8 @@ pub struct Explicit<S: Scalar, Y: System<S>> {
     last_rate: S,
     /// Length of the last step in τ.
     length: S,
+    /// What there is of the dense output of the last step.
+    drawing: Drawing,
     /// Length that suits the next step in τ.
     next: f64,
     /// Lengths that suited the first step after a restart in the same modes.
@@ -178,6 +204,7 @@ impl<S: Scalar, Y: System<S>> Explicit<S, Y> {
             last_rates: vec![S::zero(); capacity],
             last_rate: S::zero(),
             length: S::zero(),
+            drawing: Drawing::Absent,
             next: options.initial_step,
             first_lengths: HashMap::new(),
             modes: 0,
@@ -342,6 +369,7 @@ impl<S: Scalar, Y: System<S>> Explicit<S, Y> {
                 }
             }
             self.length = length;
+            self.drawing = Drawing::Begun;
             match self.meet_events(end)? {
                 Some(advance) => return Ok(advance),
                 None => self.reject(length.to_f64() * 0.25),
@@ -364,6 +392,7 @@ impl<S: Scalar, Y: System<S>> Explicit<S, Y> {
     fn stand(&mut self) {
         self.from.clone_from(&self.here);
         self.length = S::zero();
+        self.drawing = Drawing::Absent;
     }
 
     /// Guards against steps and events that go on at one time, and against steps so short that
@@ -492,8 +521,9 @@ impl<S: Scalar, Y: System<S>> Engine<S> for Explicit<S, Y> {
         self.from.y[self.flow.time()]
     }
 
-    /// A partial step from the nearer end of the last one; while a contact lasts, as many more as
-    /// it takes to land on the time. The system is left evaluated somewhere in the step.
+    /// A partial step from the nearer end
+    /// of the last one, while a contact lasts by as many more as it takes to land on the time. The
+    /// system is left evaluated somewhere in the step.
     fn within(&mut self, time: S, at: &mut Snapshot<S>) -> Result<(), ExplicitError> {
         let (began, now) = (self.began(), self.now.time);
         if !(time >= began && time <= now) {
@@ -533,7 +563,7 @@ impl<S: Scalar, Y: System<S>> Engine<S> for Explicit<S, Y> {
             true => time - self.began(),
             false => self.length * S::from_f64(self.place_of(time)),
         };
-        self.partial(place, accuracy.max(self.options.tolerance))?;
+        self.look_in(place, accuracy.max(self.options.tolerance))?;
         self.take_probe(at);
         Ok(())
     }
@@ -553,6 +583,7 @@ impl<S: Scalar, Y: System<S>> Engine<S> for Explicit<S, Y> {
             count("steps", tally.steps),
             count("rejected_steps", tally.rejected),
             count("partial_steps", tally.partial),
+            count("dense_outputs", tally.drawn),
             count("right_hand_sides", self.flow.evaluations),
             count("events", tally.events),
             count("restarts", tally.restarts),
@@ -602,11 +633,56 @@ impl<S: Scalar, Y: System<S>> Explicit<S, Y> {
         watches.any(|watch| watch.direction != Direction::Off && watch.power <= 0.0)
     }
 
+    /// Whether looks may read the dense output: where the method has one, the tolerance is a middling
+    /// one, and the step has nothing that it would smooth over.
+    fn may_draw(&self) -> bool {
+        let has_one = matches!(self.stepper, Stepper::RungeKutta(_));
+        let suits = self.options.tolerance > TIGHTEST && self.options.tolerance <= LOOSE;
+        has_one && suits && !self.may_be_rough_beyond()
+    }
+
+    /// Makes the dense output of the last step. Returns whether it is as true as the step.
+    fn draw(&mut self) -> Result<bool, ExplicitError> {
+        let Stepper::RungeKutta(method) = &mut self.stepper else { return Ok(false) };
+        if matches!(self.drawing, Drawing::Done | Drawing::Doubtful) {
+            return Ok(self.drawing == Drawing::Done);
+        }
+        self.tally.drawn += 1;
+        self.evaluated_here = false;
+        let begun = self.drawing == Drawing::Begun;
+        let (flow, rates) = (&mut self.flow, &self.here.rates);
+        let drawn = method.draw(flow, &self.from, self.length, rates, begun, &self.norm);
+        let true_enough =
+            drawn.map_err(|source| ExplicitError::System { time: self.step_begin(), source })?;
+        self.drawing = if true_enough { Drawing::Done } else { Drawing::Doubtful };
+        Ok(true_enough)
+    }
+
+    /// Puts `probe` where the dense output is after a share of the step.
+    fn follow(&mut self, share: S) {
+        let Stepper::RungeKutta(method) = &mut self.stepper else { return };
+        method.follow(share);
+        self.evaluated_here = false;
+        self.probe.displace(&self.from, self.stepper.increment());
+    }
+
+    /// Puts `probe` this far into the step, as accurately as this or as the step.
+    fn look_in(&mut self, place: S, accuracy: f64) -> Result<(), ExplicitError> {
+        if !(self.may_draw() && self.draw()?) {
+            return self.partial(place, accuracy);
+        }
+        self.follow(place / self.length);
+        Ok(())
+    }
+
     /// Partial step to `probe`, which is to lie this far into the step; from its nearer end, or,
     /// where the tolerance is loose, from its begin.
     fn partial(&mut self, place: S, tolerance: f64) -> Result<(), ExplicitError> {
         self.tally.partial += 1;
         self.evaluated_here = false;
+        if self.drawing == Drawing::Begun {
+            self.drawing = Drawing::Absent;
+        }
         let same = self.options.tolerance <= TIGHT;
         let from_end = same && place + place > self.length && !self.may_be_rough_beyond();
         let (base, length) =

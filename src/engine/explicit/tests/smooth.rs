@@ -47,6 +47,28 @@ fn an_oscillator_keeps_its_digits_in_71() {
     }
 }
 
+#[test]
+fn looks_into_a_step_are_as_true_as_it_and_take_four_right_hand_sides_together() {
+    let system = Oscillators::new(3, 2.0, 0.0, Direction::Off);
+    let mut engine = started(system, options(1e-12, 1e-3), vec![1.0; 3], vec![0.0; 3]);
+    let mut at = engine.now().clone();
+    let sides = |engine: &Explicit<f64, Oscillators<f64>>| {
+        engine.counts().iter().find(|count| count.name == "right_hand_sides").unwrap().value
+    };
+    while engine.now().time < 7.3 {
+        engine.step(7.3).unwrap();
+        let before = sides(&engine);
+        let (began, now) = (engine.began(), engine.now().time);
+        for part in [0.05, 0.3, 0.5, 0.77, 0.95] {
+            engine.glance(began + (now - began) * part, 1e-18, &mut at).unwrap();
+            let (sin, cos) = (2.0 * at.time).sin_cos();
+            let error = (at.q[2] - cos).abs().max((at.v[2] + 2.0 * sin).abs() / 2.0);
+            assert!(error < 30e-12, "{error:e} at {}", at.time);
+        }
+        assert_eq!(sides(&engine) - before, 4);
+    }
+}
+
 /// Half period of the pendulum from one radian, from one passage through the vertical to the
 /// next: π / agm(1, cos ½).
 const HALF_PERIOD: &str =

@@ -146,7 +146,7 @@ impl<S: Scalar> System<S> for Pendulum<S> {
             self.accelerations[1] = -S::one() - lambda * q[1];
         } else {
             let turn = state.carried.map_or_else(|| turn_of(q[0]), |carried| carried.turns[0]);
-            self.accelerations[0] = -turn.sin;
+            self.accelerations[0] = -turn[1];
         }
         Ok(())
     }
@@ -190,7 +190,7 @@ impl<S: Scalar> System<S> for Pendulum<S> {
 
 fn turn_of<S: Scalar>(angle: S) -> Turn<S> {
     let (sin, cos) = angle.sin_cos();
-    Turn { cos, sin }
+    [cos, sin]
 }
 
 /// Balls in free flight along one line each, and a wall at depth zero that pushes with
