@@ -1,13 +1,14 @@
 //! From a checked case to a finished run: which arithmetic, which engine, which loop.
 
 use crate::case::{self, Case, Changes, EngineName, NormName, Precision, SolverPlan};
+use crate::clearance::Block;
 use crate::contact::depth_under;
 use crate::dae::{Count, Engine};
 use crate::engine::explicit::{self, Explicit};
 use crate::engine::ida::{self, Ida};
 use crate::mechanism::{BodyObservation, JointObservation, Mechanism};
-use crate::model::{Complaint, Complaints, Joint, Journals, KeyPath, Model};
-use crate::plane::Vector;
+use crate::model::{Complaint, Complaints, GROUND, Joint, Journals, KeyPath, Model, Owner};
+use crate::plane::{Pose, Vector};
 use crate::record::{Attribute, Header};
 use crate::run::{
     self, AnyRecorder, Checkpoint, Checkpoints, Erased, Kept, NotKept, Reached, Recorder,
@@ -166,10 +167,11 @@ fn what_no_run_begins_with(mechanism: &Mechanism<f64>) -> Vec<Complaint> {
         let depth = start.clearances[k].penetration;
         let allowed = clearance.believed_depth();
         if !(depth <= allowed) {
-            let key = KeyPath::new(["joints", &model.names().clearances[k], "clearance"]);
+            let key = Owner::Clearance(k).key(model.names()).key("clearance");
             let law = format!("its contact law means nothing beyond {allowed:.4e} m");
-            let hint = "the start puts the journal there";
-            complaints.add(key, format!("starts {depth:.4e} m deep in the bearing: {law}; {hint}"));
+            let [inner, outer] = clearance.surfaces();
+            let hint = format!("the start puts the {inner} there");
+            complaints.add(key, format!("starts {depth:.4e} m deep in the {outer}: {law}; {hint}"));
         }
     }
     let forces =
@@ -216,28 +218,49 @@ pub fn assemble<S: Scalar>(case: &Case) -> Result<Mechanism<S>, case::Error> {
 }
 
 /// Where in their bearings journals lie under the forces of the ideal mechanism at t = 0 (m): opposite
-/// to the force on each, c deep, or as much deeper as bears it. One that bears nothing is centred.
-/// Doubles in any arithmetic, so that it is the same start.
-fn offsets_under_load(case: &Case, journals: Journals) -> Result<Vec<Vector<f64>>, case::Error> {
+/// to the force on each, c deep, or as much deeper as bears it; likewise pins, and blocks (m, rad).
+/// What bears nothing is centred. Doubles in any arithmetic, so that it is the same start.
+fn offsets_under_load(case: &Case, journals: Journals) -> Result<Vec<[f64; 2]>, case::Error> {
     if case.description.joints.iter().all(|joint| joint.clearance.is_none()) {
         return Ok(Vec::new());
     }
     let ideal = assemble::<f64>(&ideal_case(case)?)?;
-    let observed = ideal.observe(0.0, &ideal.start().integrals);
+    let start = ideal.observe(0.0, &ideal.start().integrals);
     let model = Model::<f64>::new(&case.description).map_err(|told| case.reject(told))?;
-    let loose = model.joints().iter().zip(&observed.joints);
-    let offset = |(joint, observed): (&Joint<f64>, &JointObservation)| {
-        let clearance = &model.clearances()[joint.clearance?];
-        let force = Vector::new(observed.force[0], observed.force[1]);
-        let size = force.norm();
-        let depth = match journals {
-            Journals::Pressed => depth_under(clearance.normal.elastic(), size),
+    let place = |(joint, observed): (&Joint<f64>, &JointObservation)| {
+        let clearance = model.clearances()[joint.clearances.clone()].first()?;
+        let deep = |force: f64| match journals {
+            Journals::Pressed => depth_under(clearance.normal.elastic(), force),
             Journals::Touching | Journals::Centred => 0.0,
         };
-        let none = size == 0.0;
-        Some(if none { Vector::zero() } else { force * (-(clearance.radial + depth) / size) })
+        let force = Vector::new(observed.force[0], observed.force[1]);
+        Some(match clearance.wall {
+            None => {
+                let size = force.norm();
+                let none = size == 0.0;
+                let offset = force * -((clearance.radial + deep(size)) / size);
+                if none { [0.0; 2] } else { [offset.x, offset.y] }
+            }
+            Some(wall) => {
+                let turned = match joint.ends.pair.i {
+                    GROUND => 0.0,
+                    body => start.bodies[body - 1].angle,
+                };
+                let across = Pose::new(Vector::zero(), turned).rotate(wall.normal).dot(force);
+                match &model.clearances()[joint.clearances.clone()] {
+                    [one, other, _, _] => {
+                        let length = (one.pair.s_j - other.pair.s_j).norm();
+                        let (height, gap) = (2.0 * wall.nominal, clearance.radial);
+                        let block = Block { length, height, gap };
+                        block.lying(across, observed.moment, deep)
+                    }
+                    _ if across == 0.0 => [0.0; 2],
+                    _ => [-across.signum() * (clearance.radial + deep(across.abs())), 0.0],
+                }
+            }
+        })
     };
-    Ok(loose.filter_map(offset).collect())
+    Ok(model.joints().iter().zip(&start.joints).filter_map(place).collect())
 }
 
 /// A case without its clearances, in doubles. A start that is fixed and goes together with

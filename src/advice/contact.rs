@@ -45,7 +45,7 @@ fn touch(mechanism: &Mechanism<f64>, turn: &Turn, k: usize) -> Option<Touch> {
     let speed = speed(mechanism, clearance.radial);
     let elastic = clearance.normal.elastic();
     let Impact { depth, duration, .. } = Impact::of(&NormalLaw::new(*elastic, 0.0), mass, speed);
-    let force = turn.force_in(&model.names().clearances[k]);
+    let force = turn.force_in(&model.names().joints[model.names().loose[k]]);
     Some(Touch {
         clearance: k,
         mass,

@@ -74,9 +74,11 @@ fn too_soft(mechanism: &Mechanism<f64>, touch: &Touch) -> Option<Note> {
         _ => (touch.depth, format!("an impact at {:.3e} m/s", touch.speed)),
     };
     (depth > allowed).then(|| {
-        let name = &mechanism.model().names().clearances[touch.clearance];
+        let names = mechanism.model().names();
+        let name = &names.joints[names.loose[touch.clearance]];
+        let [inner, outer] = clearance.surfaces();
         let text = format!(
-            "{what} presses the journal {depth:.3e} m into its bearing, where the law is believed \
+            "{what} presses the {inner} {depth:.3e} m into its {outer}, where the law is believed \
              to {allowed:.3e} m: is K in N/m^n? 1 N/mm^1.5 is 3.162e4 N/m^1.5"
         );
         Note::new(format!("joints.{name}.clearance.normal"), text)

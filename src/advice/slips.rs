@@ -2,7 +2,7 @@
 
 use super::Note;
 use crate::case::Case;
-use crate::model::{BodyDescription, ClearanceDescription, Description, NamedPoint};
+use crate::model::{BodyDescription, ClearanceDescription, Description, NamedPoint, Play};
 use std::f64::consts::TAU;
 
 /// The softest that metals, polymers and rubber are, and less (Pa).
@@ -71,9 +71,21 @@ fn inertia(body: &BodyDescription, size: f64) -> Option<Note> {
 /// The longest link or the largest bearing (m).
 fn size_of(description: &Description) -> f64 {
     let links = description.bodies.iter().flat_map(|body| links(&body.points));
-    let bearings = description.joints.iter().filter_map(|joint| joint.clearance.as_ref());
-    let bearings = bearings.map(|clearance| clearance.bearing_radius.to_f64());
-    links.chain(bearings).fold(0.0, f64::max)
+    let clearances = description.joints.iter().filter_map(|joint| joint.clearance.as_ref());
+    let holes = clearances.map(|clearance| largest(&clearance.play).1);
+    links.chain(holes).fold(0.0, f64::max)
+}
+
+/// The largest length (m) of what touches, and its key.
+fn largest(play: &Play) -> (&'static str, f64) {
+    match play {
+        Play::Bearing { bearing_radius, .. } => ("bearing_radius", bearing_radius.to_f64()),
+        Play::Guide { length, height, .. } if length.to_f64() < height.to_f64() => {
+            ("height", height.to_f64())
+        }
+        Play::Guide { length, .. } => ("length", length.to_f64()),
+        Play::Slot { pin_radius, .. } => ("pin_radius", pin_radius.to_f64()),
+    }
 }
 
 fn clearance_notes(
@@ -82,7 +94,9 @@ fn clearance_notes(
     description: &Description,
 ) -> Vec<Note> {
     let mut notes = Vec::new();
-    let (radius, radial) = (clearance.bearing_radius.to_f64(), clearance.radial.to_f64());
+    let (large, radius) = largest(&clearance.play);
+    let (play, radial) = clearance.play();
+    let radial = radial.to_f64();
     let all = || description.bodies.iter().flat_map(|body| links(&body.points));
     let longest = all().fold(0.0, f64::max);
     let shortest = all().fold(f64::INFINITY, f64::min);
@@ -92,13 +106,13 @@ fn clearance_notes(
             false => String::new(),
         };
         let text = format!("{radius} m{beside}: is it in m, not in mm?");
-        notes.push(Note::new(format!("{key}.bearing_radius"), text));
+        notes.push(Note::new(format!("{key}.{large}"), text));
     }
     if radial > OF_A_LINK * shortest {
         let text = format!(
             "{radial} m is of the order of a link: the shortest is {shortest:.4} m; is it in m?"
         );
-        notes.push(Note::new(format!("{key}.radial"), text));
+        notes.push(Note::new(format!("{key}.{play}"), text));
     }
     let young = clearance.normal.elastic.of_materials::<f64>("young");
     if let Some(young) = young.into_iter().find(|young| *young < SOFTEST) {

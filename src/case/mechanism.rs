@@ -6,8 +6,8 @@ use super::table_reader::TableReader;
 use crate::contact::{Damping, elastic, viscous};
 use crate::model::{
     BodyDescription, ClearanceDescription, DampingDescription, Description, DriveDescription,
-    JointDescription, Journals, LoadDescription, NamedPoint, NormalDescription, StartDescription,
-    Tension,
+    JointDescription, Journals, LoadDescription, NamedPoint, NormalDescription, Play,
+    StartDescription, Tension,
 };
 use crate::parameter::{Kind, Values};
 use crate::scalar::Decimal;
@@ -83,17 +83,40 @@ fn body(name: &str, keys: &mut TableReader) -> BodyDescription {
 
 fn joint(name: &str, keys: &mut TableReader) -> Option<JointDescription> {
     let part = keys.part("kind", joint::KINDS, None)?;
-    let clearance = match part.is(joint::REVOLUTE) {
-        true => keys.optional_table("clearance", clearance),
-        false => None,
+    let play = match part.kind().word {
+        joint::REVOLUTE => Some(bearing as fn(&mut TableReader) -> Play),
+        joint::PRISMATIC => Some(guide as _),
+        joint::PIN_SLOT => Some(slot as _),
+        _ => None,
     };
+    let clearance =
+        play.and_then(|play| keys.optional_table("clearance", |keys| clearance(keys, play)));
     Some(JointDescription { name: name.to_owned(), part, clearance })
 }
 
-fn clearance(keys: &mut TableReader) -> ClearanceDescription {
-    ClearanceDescription {
+fn bearing(keys: &mut TableReader) -> Play {
+    Play::Bearing {
         bearing_radius: keys.required("bearing_radius", "m"),
         radial: keys.required("radial", "m"),
+    }
+}
+
+fn guide(keys: &mut TableReader) -> Play {
+    Play::Guide {
+        gap: keys.required("gap", "m"),
+        length: keys.required("length", "m"),
+        height: keys.required("height", "m"),
+        corner_radius: keys.optional("corner_radius", "m"),
+    }
+}
+
+fn slot(keys: &mut TableReader) -> Play {
+    Play::Slot { gap: keys.required("gap", "m"), pin_radius: keys.required("pin_radius", "m") }
+}
+
+fn clearance(keys: &mut TableReader, play: fn(&mut TableReader) -> Play) -> ClearanceDescription {
+    ClearanceDescription {
+        play: play(keys),
         normal: keys.table("normal", normal),
         tension: keys.choice("tension", &TENSIONS, Some("keep")).unwrap_or(Tension::Keep),
         minimum_impact_rate: keys.number_or("minimum_impact_rate", "m/s", "1e-3"),

@@ -44,9 +44,22 @@ pub fn schema() -> Value {
             law
         }));
     }
+    share_contact_keys(&mut schema["$defs"]);
     default_kind(&mut schema["$defs"]["drive"], "kind", "speed");
     default_kind(&mut schema["$defs"]["normal"], "elastic", elastic::POWER.word);
     schema
+}
+
+/// Gives guides and slots the keys of what happens in a contact, which stand with the bearing's.
+fn share_contact_keys(defs: &mut Value) {
+    let bearing = defs["clearance"]["properties"].clone();
+    for (key, value) in bearing.as_object().into_iter().flatten() {
+        if !["bearing_radius", "radial"].contains(&key.as_str()) {
+            for play in ["guide", "slot"] {
+                defs[play]["properties"][key] = value.clone();
+            }
+        }
+    }
 }
 
 /// Lets the key that chooses a kind be left out, where one kind is the default.
@@ -82,9 +95,13 @@ fn normal_keys() -> Map<String, Value> {
 /// Keys of a joint that are those of no kind.
 fn joint_keys(kind: &Kind) -> Map<String, Value> {
     let mut keys = Map::new();
-    if kind.word == joint::REVOLUTE {
-        keys.insert("clearance".into(), json!({ "$ref": "#/$defs/clearance" }));
-    }
+    let play = match kind.word {
+        joint::REVOLUTE => "clearance",
+        joint::PRISMATIC => "guide",
+        joint::PIN_SLOT => "slot",
+        _ => return keys,
+    };
+    keys.insert("clearance".into(), json!({ "$ref": format!("#/$defs/{play}") }));
     keys
 }
 
@@ -183,7 +200,10 @@ pub fn tables() -> String {
     table(&mut text, "Ground: `[ground]`", "", &schema["properties"]["ground"]);
     table(&mut text, "Bodies: `[bodies.NAME]`", "", &defs["body"]);
     kinds(&mut text, "Joints: `[joints.NAME]`", &defs["joint"], joint::KINDS);
-    table(&mut text, "Clearance: `[joints.NAME.clearance]`", "", &defs["clearance"]);
+    let clearance = |of: &str| format!("Clearance of a {of}: `[joints.NAME.clearance]`");
+    table(&mut text, &clearance("revolute joint"), "", &defs["clearance"]);
+    table(&mut text, &clearance("prismatic joint"), "", &defs["guide"]);
+    table(&mut text, &clearance("pin in a slot"), "", &defs["slot"]);
     let normal =
         "Normal force: `normal` of a clearance, by its elastic law, or by a law of its own";
     kinds(&mut text, normal, &defs["normal"], &[elastic::KINDS, viscous::KINDS].concat());

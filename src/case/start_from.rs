@@ -10,7 +10,7 @@ use super::table_reader::{Findings, TableReader};
 use super::{files, mechanism};
 use crate::friction::FrictionLaw;
 use crate::mechanism::Observation;
-use crate::model::{Complaint, KeyPath, Model, check};
+use crate::model::{Complaint, KeyPath, Model, check, members};
 use crate::record::ResultFile;
 use std::error::Error;
 use std::path::{Path, PathBuf};
@@ -111,8 +111,11 @@ fn same_names(document: &DocumentMut, result: &ResultFile) -> Result<(), String>
         parts.map_or(Vec::new(), |parts| parts.iter().map(|(name, _)| name.to_owned()).collect())
     };
     let joints = document.get("joints").and_then(Item::as_table_like);
-    let loose = joints.into_iter().flat_map(|joints| joints.iter()).filter_map(|(name, joint)| {
-        joint.as_table_like()?.get("clearance").map(|_| name.to_owned())
+    let loose = joints.into_iter().flat_map(|joints| joints.iter()).flat_map(|(name, joint)| {
+        let joint = joint.as_table_like();
+        let kind = joint.and_then(|joint| joint.get("kind")?.as_str()).unwrap_or_default();
+        let loose = joint.is_some_and(|joint| joint.contains_key("clearance"));
+        if loose { members(name, kind) } else { Vec::new() }
     });
     for (what, ours, theirs) in [
         ("body", names("bodies"), result.bodies()),

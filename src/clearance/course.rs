@@ -11,7 +11,11 @@
 //! |ë| ≤ a + j t,  |ė| ≤ v + a t + …,  |e| ≤ e + v t + …
 //! ```
 //! at a time t from the state; what changing forces add, the search for events takes from
-//! differences of g̈.
+//! differences of g̈. Before a wall g = δ/c, and turning makes of the third derivative of n·D, with
+//! D from body `i` to the point,
+//! ```text
+//! |n⃛·D + 3 n̈·Ḋ + 3 ṅ·D̈ + n·D⃛|,   |ṅ| = ω_i,  |n̈| ≤ |α_i| + ω_i²,  |n⃛| ≤ |ω_i|³ + 3 |ω_i α_i|
+//! ```
 
 use super::{Clearance, EventSlot, Gap, GapRates, Mode};
 use crate::dae::Course;
@@ -46,13 +50,16 @@ impl<S: Scalar> Clearance<S> {
         carried: bool,
     ) -> Course {
         if slot == EventSlot::Depth {
-            return self.depth_course(gap, bodies, carried);
+            return match self.wall {
+                None => self.depth_course(gap, bodies, carried),
+                Some(_) => self.wall_course(gap, bodies, carried),
+            };
         }
         let rates = self.rates(gap, bodies.motions);
         let second = self.second_rates(gap, &rates, bodies.motions, bodies.accelerations);
         let value = self.event_value(mode, slot, gap, inner, || rates).to_f64();
         let rate = self.event_rate(mode, slot, gap, inner, &rates, second).to_f64();
-        let grain = self.rate_grain(slot, mode, &rates, inner, bodies);
+        let grain = self.rate_grain(slot, mode, gap, &rates, inner, bodies);
         Course { value, rate, grain, noise: S::EPSILON * (ROUNDINGS + 4.0 * grain), ..Course::NONE }
     }
 
@@ -71,6 +78,43 @@ impl<S: Scalar> Clearance<S> {
             (3.0 * a * a + 4.0 * v * j) * square,
             5.0 * a * j * square,
         ];
+        self.told([value, rate, bend], twist, gap, bodies, carried)
+    }
+
+    fn wall_course(&self, gap: &Gap<S>, bodies: Bodies<'_, S>, carried: bool) -> Course {
+        let (i, j) = (self.pair.i, self.pair.j);
+        let rates = self.rates(gap, bodies.motions);
+        let second = self.second_rates(gap, &rates, bodies.motions, bodies.accelerations).0;
+        let [value, rate, bend] = [gap.depth, rates.rate, second].map(|x| x / self.radial);
+        let [omega, alpha] =
+            [bodies.motions, bodies.accelerations].map(|of| of[i].angular.to_f64().abs());
+        let turning = [omega, alpha + omega * omega, omega * (omega * omega + 3.0 * alpha)];
+        // D, Ḋ, D̈ and what turning makes of D⃛
+        let going = bodies.motions[j].at(gap.arm_j) - bodies.motions[i].linear;
+        let pulled = bodies.accelerations[j].at(gap.arm_j)
+            - gap.arm_j * (bodies.motions[j].angular * bodies.motions[j].angular)
+            - bodies.accelerations[i].linear;
+        let [d, v, a] = [gap.arm_i, going, pulled].map(|x| x.norm().to_f64());
+        let jerk = Self::jerk_of(j, gap.arm_j, bodies);
+        let c = self.radial.to_f64();
+        let twist = [
+            (turning[2] * d + 3.0 * turning[1] * v + 3.0 * turning[0] * a + jerk) / c,
+            (turning[2] * v + 3.0 * turning[1] * a + 3.0 * turning[0] * jerk) / c,
+            0.5 * (turning[2] * a + 3.0 * turning[1] * jerk) / c,
+        ];
+        self.told([value, rate, bend], twist, gap, bodies, carried)
+    }
+
+    /// The course of the depth's event function, with its grain and noise.
+    fn told(
+        &self,
+        derivatives: [S; 3],
+        twist: [f64; 3],
+        gap: &Gap<S>,
+        bodies: Bodies<'_, S>,
+        carried: bool,
+    ) -> Course {
+        let [value, rate, bend] = derivatives.map(S::to_f64);
         let (i, journal) = (self.pair.i, self.pair.j);
         let reach = |body: usize, arm: Vector<S>| {
             (bodies.poses[body].position.norm() + arm.norm()).to_f64()
@@ -78,24 +122,20 @@ impl<S: Scalar> Clearance<S> {
         let grain = (reach(i, gap.arm_i) + reach(journal, gap.arm_j)) / self.radial.to_f64();
         let lost = if carried { 0.0 } else { 4.0 * grain };
         let noise = S::EPSILON * (ROUNDINGS + lost);
-        Course {
-            value: value.to_f64(),
-            rate: rate.to_f64(),
-            bend: Some(bend.to_f64()),
-            twist,
-            grain,
-            noise,
-        }
+        Course { value, rate, bend: Some(bend), twist, grain, noise }
     }
 
     /// What turning makes of e⃛ at the most (m/s³).
     fn turning_jerk(&self, bodies: Bodies<'_, S>) -> f64 {
-        let of = |body: usize, arm: Vector<S>| {
-            let rate = bodies.motions[body].angular.to_f64().abs();
-            let second = bodies.accelerations[body].angular.to_f64().abs();
-            arm.norm().to_f64() * rate * (rate * rate + 3.0 * second)
-        };
+        let of = |body: usize, arm: Vector<S>| Self::jerk_of(body, arm, bodies);
         of(self.pair.i, self.pair.s_i) + of(self.pair.j, self.pair.s_j)
+    }
+
+    /// The same of a point of one body.
+    fn jerk_of(body: usize, arm: Vector<S>, bodies: Bodies<'_, S>) -> f64 {
+        let rate = bodies.motions[body].angular.to_f64().abs();
+        let second = bodies.accelerations[body].angular.to_f64().abs();
+        arm.norm().to_f64() * rate * (rate * rate + 3.0 * second)
     }
 
     /// What a relative error of the state makes of an event function of rates.
@@ -103,6 +143,7 @@ impl<S: Scalar> Clearance<S> {
         &self,
         slot: EventSlot,
         mode: &Mode<S>,
+        gap: &Gap<S>,
         rates: &GapRates<S>,
         inner: Inner<S>,
         bodies: Bodies<'_, S>,
@@ -111,7 +152,8 @@ impl<S: Scalar> Clearance<S> {
             let motion = &bodies.motions[body];
             motion.linear.norm() + (arm.norm() + radius) * motion.angular.abs()
         };
-        let speed = of(self.pair.i, self.pair.s_i, self.bearing_radius)
+        let arm_i = if self.wall.is_some() { gap.arm_i } else { self.pair.s_i };
+        let speed = of(self.pair.i, arm_i, self.bearing_radius)
             + of(self.pair.j, self.pair.s_j, self.journal_radius)
             + rates.sweep.abs();
         let per_speed = match (slot, mode, &self.friction) {

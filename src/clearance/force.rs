@@ -2,7 +2,8 @@
 //!
 //! The normal force pushes the journal along −n, the tangential force acts on it along t; on each
 //! body at its own contact point, R_j n and R_b n from the centres, as the paper's moments do.
-//! The arms differ by δ, so angular momentum is kept only to δ F_T.
+//! The arms differ by δ, so angular momentum is kept only to δ F_T. Before a wall both bodies are
+//! touched at the point itself, R from its centre where it is a pin's, and angular momentum is kept.
 //!
 //! Eq. 10 takes F_N as pressing the surfaces together. Where the normal law pulls there is no
 //! friction: a negative F_N in eq. 10 would drive the slip.
@@ -91,15 +92,13 @@ impl<S: Scalar> Clearance<S> {
         [bearing, journal]
     }
 
-    /// Changes of the wrenches, from those of the gap. `turning` says whether the arm of the
-    /// journal's body (`Some(true)`) or of the bearing's (`Some(false)`) turns with it.
+    /// Changes of the wrenches, from those of the gap.
     pub fn force_slopes(
         &self,
         gap: &Gap<S>,
         rates: &GapRates<S>,
         force: &ContactForce<S>,
         slopes: &GapSlopes<S>,
-        turning: Option<bool>,
     ) -> ForceSlopes<S> {
         let d_normal = force.normal.d_depth * slopes.depth + force.normal.d_rate * slopes.rate;
         let d_tangential =
@@ -108,11 +107,9 @@ impl<S: Scalar> Clearance<S> {
         let df = rates.tangent * (d_tangential - force.normal.value * turn)
             - rates.normal * (d_normal + force.tangential * turn);
         let mut changed = self.changed(gap, df, d_tangential);
-        match turning {
-            Some(true) => changed.journal.moment += gap.arm_j.turned().cross(force.on_journal),
-            Some(false) => changed.bearing.moment -= gap.arm_i.turned().cross(force.on_journal),
-            None => {}
-        }
+        let [arm_i, arm_j] = slopes.arms;
+        changed.bearing.moment -= arm_i.cross(force.on_journal);
+        changed.journal.moment += arm_j.cross(force.on_journal);
         changed
     }
 

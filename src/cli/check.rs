@@ -125,7 +125,8 @@ impl Checked<'_> {
         let offset = self.start.clearances[k].eccentricity;
         let mode = self.start_mode(k);
         let name = &model.names().clearances[k];
-        writeln!(f, "  clearance    {name}: journal on {journal} in bearing on {bearing}")?;
+        let [inner, outer] = model.clearances()[k].surfaces();
+        writeln!(f, "  clearance    {name}: {inner} on {journal} in {outer} on {bearing}")?;
         writeln!(f, "    starts in {mode}, eccentricity {offset:.6e} m")?;
         let touch = self.touches.iter().find(|touch| touch.clearance == k);
         match touch {
@@ -225,8 +226,9 @@ impl Checked<'_> {
         let described = self.case.description.clearance(name);
         let described = described.and_then(|clearance| clearance.friction.as_ref());
         json!({
+            "touches": clearance.surfaces()[0],
             "radial": clearance.radial,
-            "bearing_radius": clearance.bearing_radius,
+            "bearing_radius": clearance.wall.is_none().then_some(clearance.bearing_radius),
             "journal_radius": clearance.journal_radius,
             "elastic": elastic_word(&self.case.description, self.simulation.mechanism(), k),
             "stiffness": power.map(|(stiffness, _)| stiffness),
@@ -461,13 +463,19 @@ fn write_law(
     f: &mut String,
 ) -> fmt::Result {
     let clearance = &mechanism.model().clearances()[k];
-    writeln!(
-        f,
-        "    radial clearance {:e} m, bearing {:e} m, journal {:e} m",
-        tidy(clearance.radial),
-        tidy(clearance.bearing_radius),
-        tidy(clearance.journal_radius)
-    )?;
+    let radial = tidy(clearance.radial);
+    let [bearing, journal] = [clearance.bearing_radius, clearance.journal_radius].map(tidy);
+    match clearance.surfaces()[0] {
+        "corner" => {
+            let height = 2.0 * clearance.wall.map_or(0.0, |wall| wall.nominal);
+            writeln!(f, "    play {radial:e} m on each side of a block {:e} m high", tidy(height))?;
+        }
+        "pin" => writeln!(f, "    play {radial:e} m on each side of a pin of {journal:e} m")?,
+        _ => writeln!(
+            f,
+            "    radial clearance {radial:e} m, bearing {bearing:e} m, journal {journal:e} m"
+        )?,
+    }
     let law = &clearance.normal;
     match law.elastic().power() {
         Some((k, n)) => write!(f, "    K = {k:.9e} N/m^{}", tidy(n))?,
@@ -539,11 +547,13 @@ fn write_rest(
     )?;
     writeln!(
         f,
-        "    a run stops where the journal is deeper than {:e} m, {}",
+        "    a run stops where the {} is deeper than {:e} m, {}",
+        clearance.surfaces()[0],
         tidy(clearance.believed_depth()),
         match clearance.normal.elastic().deepest() > clearance.believed_depth() {
-            true => format!("{} of its radius", clearance.maximum_penetration),
-            false => clearance.believed_because(),
+            true if clearance.wall.is_none() =>
+                format!("{} of its radius", clearance.maximum_penetration),
+            _ => clearance.believed_because(),
         }
     )
 }

@@ -53,6 +53,10 @@ enum Kind {
     PlanetaryGear,
     /// Crank press with a flywheel and a torque drive, clearance at the wrist pin.
     Press,
+    /// A block that tumbles in a guide with play.
+    BlockInGuide,
+    /// Slider-crank, play between slider and guide.
+    SliderCrankGuide,
     /// Four-bars in a row, `--count` of them; ideal joints.
     FourBars,
 }
@@ -64,6 +68,12 @@ impl Kind {
             Kind::FourBar => ("four-bar.toml", include_str!("new/four-bar.toml")),
             Kind::SliderCrank => {
                 ("slider-crank.toml", include_str!("../../cases/slider-crank.toml"))
+            }
+            Kind::BlockInGuide => {
+                ("block-in-guide.toml", include_str!("../../cases/block-in-guide.toml"))
+            }
+            Kind::SliderCrankGuide => {
+                ("slider-crank-guide.toml", include_str!("../../cases/slider-crank-guide.toml"))
             }
             Kind::SixBar => ("six-bar.toml", include_str!("new/six-bar.toml")),
             Kind::Pendulum => ("pendulum.toml", include_str!("new/pendulum.toml")),

@@ -120,6 +120,7 @@ impl Parts {
             bodies: file.bodies().to_vec(),
             joints: file.joints().to_vec(),
             clearances: file.clearances().to_vec(),
+            loose: Vec::new(),
             drives: file.drives().to_vec(),
             points: file.points().to_vec(),
         })
@@ -190,6 +191,7 @@ pub(super) mod tests {
             bodies: names(&["crank", "coupler", "follower"]),
             joints: names(&["A0", "A", "B", "B0"]),
             clearances: names(&["A"]),
+            loose: vec![1],
             drives: names(&["crank"]),
             points: Vec::new(),
         })

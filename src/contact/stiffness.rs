@@ -5,7 +5,8 @@
 //! ```
 //! The paper prints R = R_i R_j/(R_i + R_j), which is that of two spheres side by side. A journal
 //! lies *inside* its bearing: R = R_b R_j/(R_b − R_j), 4.4 times stiffer at R_b = 10 mm, c = 1 mm.
-//! Both are offered by name; the paper's own is the default of its cases.
+//! Both are offered by name; the paper's own is the default of its cases. On a plane, where R_b is
+//! infinite, both are R = R_j.
 
 use crate::scalar::Scalar;
 
@@ -39,12 +40,18 @@ fn hertz<S: Scalar>(materials: [Material<S>; 2], radius: S) -> S {
 
 /// K (N/m^1.5) as the paper prints it, from the radii (m) of bearing and journal.
 pub fn hertz_printed<S: Scalar>(materials: [Material<S>; 2], bearing: S, journal: S) -> S {
-    hertz(materials, bearing * journal / (bearing + journal))
+    hertz(
+        materials,
+        if bearing.is_finite() { bearing * journal / (bearing + journal) } else { journal },
+    )
 }
 
 /// K (N/m^1.5) of a journal inside its bearing, from their radii (m).
 pub fn hertz_internal<S: Scalar>(materials: [Material<S>; 2], bearing: S, journal: S) -> S {
-    hertz(materials, bearing * journal / (bearing - journal))
+    hertz(
+        materials,
+        if bearing.is_finite() { bearing * journal / (bearing - journal) } else { journal },
+    )
 }
 
 #[cfg(test)]

@@ -21,9 +21,29 @@ const WORDS: f64 = 14.0;
 pub(super) fn by_run_and_joint(
     runs: &Runs,
     height: f64,
+    panel: impl FnMut(&Run, &str, usize) -> Result<Option<Panel>, Error>,
+) -> Result<Vec<Sheet>, Error> {
+    by_run_and(runs, &runs.names(Dimension::Clearance), height, panel)
+}
+
+/// The same of journals in bearings alone.
+pub(super) fn by_run_and_journal(
+    runs: &Runs,
+    height: f64,
+    panel: impl FnMut(&Run, &str, usize) -> Result<Option<Panel>, Error>,
+) -> Result<Vec<Sheet>, Error> {
+    let mut journals = runs.names(Dimension::Clearance);
+    journals.retain(|name| runs.shown().any(|run| run.is_journal(name)));
+    by_run_and(runs, &journals, height, panel)
+}
+
+/// The same of some clearances.
+pub(super) fn by_run_and(
+    runs: &Runs,
+    joints: &[&str],
+    height: f64,
     mut panel: impl FnMut(&Run, &str, usize) -> Result<Option<Panel>, Error>,
 ) -> Result<Vec<Sheet>, Error> {
-    let joints = runs.names(Dimension::Clearance);
     let columns = joints.len().min(MOST[0]);
     let mut rows: Vec<Vec<Option<Panel>>> = Vec::new();
     for joints in joints.chunks(MOST[0]) {

@@ -3,7 +3,7 @@
 
 use super::decimate::Point;
 use super::flattened::{FLAT, usual};
-use super::grid::{by_run_and_joint, tell_once};
+use super::grid::{by_run_and_journal, tell_once};
 use super::inset::{INSET, Inset, pieces, round_down};
 use super::over_time::beyond_path;
 use super::palette::{BEYOND_PATH, BLACK, BLUE};
@@ -17,7 +17,7 @@ use super::{Error, Figures};
 
 /// Draws one figure with a panel for each joint of each run.
 pub(super) fn draw(runs: &Runs, figures: &mut Figures<'_>) -> Result<(), Error> {
-    let mut sheets = by_run_and_joint(runs, 1.0, |run, joint, index| {
+    let mut sheets = by_run_and_journal(runs, 1.0, |run, joint, index| {
         let Path { times, points: path, known } = path(run, index)?;
         let mut marks = Vec::new();
         if known < path.len() {

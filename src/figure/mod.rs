@@ -22,6 +22,7 @@ mod force;
 mod grid;
 mod ink;
 mod inset;
+mod guide_path;
 mod journal_path;
 mod law_loops;
 mod over_time;
@@ -172,6 +173,7 @@ pub fn draw(files: Vec<ResultFile>, options: &Options) -> Result<Vec<Figure>, Er
     drive_torque::draw(&runs, &mut figures)?;
     angular_acceleration::draw(&runs, &mut figures)?;
     journal_path::draw(&runs, &mut figures)?;
+    guide_path::draw(&runs, &mut figures)?;
     phase_portrait::draw(&runs, &mut figures)?;
     poincare::draw(&runs, &mut figures)?;
     contact_loops::draw(&runs, &mut figures)?;

@@ -1,7 +1,7 @@
 //! Poincaré section: where the journals' centres are whenever a drive passes an angle.
 
 use super::decimate::Point;
-use super::grid::{by_run_and_joint, tell_once};
+use super::grid::{by_run_and_journal, tell_once};
 use super::journal_path::in_the_circle;
 use super::palette::{BEYOND_PATH, BLUE};
 use super::panel::{Dot, Mark, Sample};
@@ -24,7 +24,7 @@ const BEYOND_DOT: Dot = Dot { radius: 1.4, colour: BEYOND_PATH };
 pub(super) fn draw(runs: &Runs, figures: &mut Figures<'_>) -> Result<(), Error> {
     let section = figures.options.section;
     let angle = signed(&format!("{}", (section.to_degrees() * 1e6).round() / 1e6));
-    let mut sheets = by_run_and_joint(runs, 1.0, |run, joint, index| {
+    let mut sheets = by_run_and_journal(runs, 1.0, |run, joint, index| {
         let Some(drive) = &run.drive else { return Ok(None) };
         let times = passages(&run.times, drive, section);
         if times.is_empty() {

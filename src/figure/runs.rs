@@ -92,6 +92,12 @@ impl Run {
         self.names(dimension).iter().position(|known| known == name)
     }
 
+    /// Whether a clearance is a journal's, and has the name of its joint; else it is one corner of a
+    /// block or one flank of a slot.
+    pub fn is_journal(&self, clearance: &str) -> bool {
+        self.index(Dimension::Joint, clearance).is_some()
+    }
+
     /// Whether the mechanism has no clearance.
     pub fn is_ideal(&self) -> bool {
         self.names(Dimension::Clearance).is_empty()

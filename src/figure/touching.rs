@@ -81,8 +81,10 @@ pub(super) fn history(run: &Run, clearance: usize) -> Result<Vec<Moment>, Error>
         rate: rates[k],
         force: forces[k],
     };
-    let radial = run.radial_clearance(clearance)?.unwrap_or(f64::NAN);
-    let in_flight = |states: Vec<Moment>| smooth(&states, radial, radial / STEPS_OF_CLEARANCE, &[]);
+    let play = run.radial_clearance(clearance)?.unwrap_or(f64::NAN);
+    let names = run.names(Dimension::Clearance);
+    let radial = names.get(clearance).is_some_and(|name| run.is_journal(name)).then_some(play);
+    let in_flight = |states: Vec<Moment>| smooth(&states, radial, play / STEPS_OF_CLEARANCE, &[]);
     let mut peaks: Vec<Peak> = peaks(run, clearance).copied().collect();
     peaks.sort_by(|a, b| a.time.total_cmp(&b.time));
     let mut moments = Vec::with_capacity(run.times.len());
@@ -154,7 +156,7 @@ fn outline(contact: &Contact, begin: Moment, end: Moment) -> [Moment; 3] {
 
 /// Puts states between others, so many that from none to the next the penetration changes by more
 /// than `step` (m), nor its rate by more than a share of the largest.
-fn smooth(states: &[Moment], radial: f64, step: f64, peaks: &[Point]) -> Vec<Moment> {
+fn smooth(states: &[Moment], radial: Option<f64>, step: f64, peaks: &[Point]) -> Vec<Moment> {
     let force = Monotone::through(states, peaks);
     let largest = states.iter().map(|state| state.rate.abs()).fold(0.0, f64::max);
     let mut moments = Vec::with_capacity(states.len());
@@ -190,8 +192,13 @@ fn within<T>(things: &[T], from: f64, to: f64, time: impl Fn(&T) -> f64) -> &[T]
     &things[first..last]
 }
 
-/// Penetration (m) and its rate (m/s) between two states: the square of the eccentricity is a cubic.
-fn between([from, to]: [Moment; 2], radial: f64, time: f64) -> (f64, f64) {
+/// Penetration (m) and its rate (m/s) between two states: of a journal, by its radial clearance, the
+/// square of the eccentricity is a cubic, before a straight wall the penetration itself.
+fn between([from, to]: [Moment; 2], radial: Option<f64>, time: f64) -> (f64, f64) {
+    let Some(radial) = radial else {
+        let knot = |state: Moment| Knot { time: state.time, value: state.depth, slope: state.rate };
+        return cubic([knot(from), knot(to)], time);
+    };
     let square = |state: Moment| {
         let eccentricity = radial + state.depth;
         Knot {
@@ -308,7 +315,7 @@ mod tests {
 
     #[test]
     fn a_contact_of_five_samples_is_drawn_to_a_hundredth_of_its_peak() {
-        let moments = smooth(&half_sine(5), RADIAL, 1.0 / STEPS_OF_DEPTH, &[[0.5, 1.0]]);
+        let moments = smooth(&half_sine(5), Some(RADIAL), 1.0 / STEPS_OF_DEPTH, &[[0.5, 1.0]]);
         assert!(moments.len() > 40, "{}", moments.len());
         for moment in &moments {
             let exact = exact(moment.time);
@@ -320,7 +327,7 @@ mod tests {
 
     #[test]
     fn forces_between_samples_never_pass_the_largest() {
-        let moments = smooth(&half_sine(4), RADIAL, 0.01, &[[0.5, 1.0]]);
+        let moments = smooth(&half_sine(4), Some(RADIAL), 0.01, &[[0.5, 1.0]]);
         let largest = moments.iter().map(|moment| moment.force).fold(f64::MIN, f64::max);
         assert_eq!(largest, 1.0);
         assert!(moments.iter().all(|moment| moment.force >= 0.0));
@@ -334,7 +341,7 @@ mod tests {
             Moment { time, depth: eccentricity - 1.0, rate: time / eccentricity, force: 0.0 }
         };
         let states: Vec<Moment> = (-1..=2).map(|k| exact(0.4 * f64::from(k) - 0.15)).collect();
-        for moment in smooth(&states, 1.0, 0.01, &[]) {
+        for moment in smooth(&states, Some(1.0), 0.01, &[]) {
             let exact = exact(moment.time);
             assert!((moment.depth - exact.depth).abs() < 1e-12, "{moment:?} {exact:?}");
             assert!((moment.rate - exact.rate).abs() < 1e-12, "{moment:?} {exact:?}");
@@ -344,12 +351,12 @@ mod tests {
     #[test]
     fn known_states_stay_as_they_are_and_close_ones_alone() {
         let states = half_sine(6);
-        let moments = smooth(&states, RADIAL, 0.05, &[[0.5, 1.0]]);
+        let moments = smooth(&states, Some(RADIAL), 0.05, &[[0.5, 1.0]]);
         assert!(states.iter().all(|state| moments.contains(state)));
         assert!(moments.windows(2).all(|pair| pair[0].time < pair[1].time));
         let many = half_sine(300);
-        assert!(smooth(&many, RADIAL, 0.05, &[]) == many);
-        assert_eq!(smooth(&states, f64::NAN, f64::NAN, &[]), states);
-        assert!(smooth(&[], RADIAL, 0.05, &[]).is_empty());
+        assert!(smooth(&many, Some(RADIAL), 0.05, &[]) == many);
+        assert_eq!(smooth(&states, Some(f64::NAN), f64::NAN, &[]), states);
+        assert!(smooth(&[], Some(RADIAL), 0.05, &[]).is_empty());
     }
 }

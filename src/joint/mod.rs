@@ -35,10 +35,12 @@ kinds! { $
     Scratch in scratch,
 }
 
-/// The words of the kinds that a drive may sit on, and of the one that may have clearance.
+/// The words of the kinds that a drive may sit on, or that may have clearance.
 pub const REVOLUTE: &str = revolute::KIND.word;
 /// See [`REVOLUTE`].
 pub const PRISMATIC: &str = prismatic::KIND.word;
+/// See [`REVOLUTE`].
+pub const PIN_SLOT: &str = pin_slot::KIND.word;
 
 /// Index of the ground among the bodies.
 pub const GROUND: usize = 0;

@@ -28,6 +28,13 @@ pub struct PinSlot<S> {
     axis: Vector<S>,
 }
 
+impl<S: Scalar> PinSlot<S> {
+    /// Across the slot, in the first body's frame: the axis turned by +90°.
+    pub fn across(&self) -> Vector<S> {
+        self.axis.turned()
+    }
+}
+
 impl<S: Scalar> Holonomic<S> for PinSlot<S> {
     const ROWS: usize = 1;
 

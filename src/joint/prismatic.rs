@@ -58,6 +58,17 @@ impl<S: Scalar> Prismatic<S> {
         [poses[1].position + arm - poses[0].position, arm]
     }
 
+    /// Across the guide's line, in the first body's frame: the axis turned by +90°.
+    pub fn across(&self) -> Vector<S> {
+        self.axis.turned()
+    }
+
+    /// A place (m) of the second body, along and across the axis from its point, in its own frame.
+    pub fn on_the_block(&self, place: Vector<S>) -> Vector<S> {
+        let aligned = Pose::new(Vector::zero(), -self.angle);
+        aligned.rotate(self.axis * place.x + self.axis.turned() * place.y)
+    }
+
     /// Travel u · d (m) of the second point along the line, from the first.
     pub fn travel<T: Lift<S>>(&self, poses: &[Pose<T>; MOST_BODIES]) -> T {
         poses[0].rotate(lift(self.axis)).dot(between(&self.pair, poses))

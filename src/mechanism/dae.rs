@@ -139,12 +139,11 @@ impl Mechanism<f64> {
             for c in 0..3 {
                 let motions = &self.now.motions;
                 let by_q = law.coordinate_slopes(gap, rates, motions, of_journal, c);
-                let turning = (c == 2).then_some(of_journal);
-                let slopes = law.force_slopes(gap, rates, force, &by_q, turning);
+                let slopes = law.force_slopes(gap, rates, force, &by_q);
                 self.subtract(law.pair.i, at + c, &slopes.bearing, j);
                 self.subtract(law.pair.j, at + c, &slopes.journal, j);
                 let by_v = law.velocity_slopes(gap, rates, of_journal, c);
-                let slopes = law.force_slopes(gap, rates, force, &by_v, None);
+                let slopes = law.force_slopes(gap, rates, force, &by_v);
                 self.subtract(law.pair.i, n + at + c, &slopes.bearing, j);
                 self.subtract(law.pair.j, n + at + c, &slopes.journal, j);
                 for (row, rate) in bends.iter().enumerate() {

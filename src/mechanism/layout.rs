@@ -284,8 +284,7 @@ fn driven_bodies<S: Scalar>(model: &Model<S>) -> Vec<DrivenBody> {
         let next = model.drives().iter().enumerate().find_map(|(drive, law)| {
             let joint = &model.joints()[law.joint];
             let (i, j) = (joint.ends.pair.i, joint.ends.pair.j);
-            let turns =
-                matches!(joint.relation, Relation::Revolute(_)) && joint.clearance.is_none();
+            let turns = matches!(joint.relation, Relation::Revolute(_)) && !joint.is_loose();
             if !turns || known(i, &found) == known(j, &found) {
                 return None;
             }
@@ -305,7 +304,7 @@ fn driven_bodies<S: Scalar>(model: &Model<S>) -> Vec<DrivenBody> {
 /// Every ideal joint and drive that eliminates no body.
 fn equations<S: Scalar>(model: &Model<S>, driven: &[DrivenBody]) -> Vec<(Constraint<S>, Owner)> {
     let joints = model.joints().iter().enumerate().filter(|(index, joint)| {
-        joint.clearance.is_none() && driven.iter().all(|driven| driven.joint != *index)
+        !joint.is_loose() && driven.iter().all(|driven| driven.joint != *index)
     });
     let drives = (model.drives().iter().enumerate())
         .filter(|(index, _)| driven.iter().all(|driven| driven.drive != *index));

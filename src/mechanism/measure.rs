@@ -3,11 +3,12 @@
 
 use super::Mechanism;
 use super::layout::{Layout, Role, Row};
-use crate::clearance::Clearance;
+use crate::clearance::{Clearance, Gap};
 use crate::course::Course;
-use crate::model::{Model, Owner};
+use crate::model::{Joint, Model, Owner};
 use crate::plane::Vector;
 use crate::scalar::Scalar;
+use std::ops::Range;
 
 /// A quantity whose extremes a run keeps: one for each body, joint, clearance or drive.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -76,10 +77,10 @@ impl Measures {
 }
 
 /// Where the force of a joint stands in what was evaluated.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub(super) enum ForceSource {
-    /// A contact.
-    Clearance(usize),
+    /// A contact, or more of them.
+    Clearances(Range<usize>),
     /// The joint of a driven body.
     Driven(usize),
     /// The constraint with this index.
@@ -88,9 +89,9 @@ pub(super) enum ForceSource {
 
 /// Where the force of each joint stands.
 pub(super) fn force_sources<S: Scalar>(model: &Model<S>, layout: &Layout<S>) -> Vec<ForceSource> {
-    let source = |(index, clearance): (usize, Option<usize>)| {
-        if let Some(k) = clearance {
-            return Some(ForceSource::Clearance(k));
+    let source = |(index, joint): (usize, &Joint<S>)| {
+        if joint.is_loose() {
+            return Some(ForceSource::Clearances(joint.clearances.clone()));
         }
         if let Some(place) = layout.driven.iter().position(|driven| driven.joint == index) {
             return Some(ForceSource::Driven(place));
@@ -98,13 +99,26 @@ pub(super) fn force_sources<S: Scalar>(model: &Model<S>, layout: &Layout<S>) -> 
         let its = |row: &Row<S>| row.owner == Owner::Joint(index);
         layout.constraints.iter().position(its).map(ForceSource::Constraint)
     };
-    let joints = model.joints().iter().map(|joint| joint.clearance).enumerate();
-    joints.filter_map(source).collect()
+    model.joints().iter().enumerate().filter_map(source).collect()
 }
 
 /// What a unit force along the line of centres gives the surfaces of each clearance in acceleration
 /// apart, at most, and one across it, at the surfaces (1/kg).
-pub(super) fn mobilities<S: Scalar>(model: &Model<S>, layout: &Layout<S>) -> Vec<[f64; 2]> {
+pub(super) fn mobilities<S: Scalar>(model: &Model<S>, layout: &Layout<S>) -> Vec<Option<[f64; 2]>> {
+    let of = |law: &Clearance<S>| {
+        let arms = [law.pair.s_i, law.pair.s_j];
+        law.wall.is_none().then(|| mobility(model, layout, law, arms))
+    };
+    model.clearances().iter().map(of).collect()
+}
+
+/// The same of one clearance, by the arms of its bodies.
+fn mobility<S: Scalar>(
+    model: &Model<S>,
+    layout: &Layout<S>,
+    clearance: &Clearance<S>,
+    [arm_i, arm_j]: [Vector<S>; 2],
+) -> [f64; 2] {
     let of = |body: usize, arm: Vector<S>, radius: S| match layout.roles[body] {
         Role::Free(_) => {
             let (mass, inertia) = (model.masses()[body].to_f64(), model.inertias()[body].to_f64());
@@ -113,13 +127,9 @@ pub(super) fn mobilities<S: Scalar>(model: &Model<S>, layout: &Layout<S>) -> Vec
         }
         Role::Ground | Role::Driven => [0.0; 2],
     };
-    let both = |clearance: &Clearance<S>| {
-        let pair = &clearance.pair;
-        let [along_i, across_i] = of(pair.i, pair.s_i, clearance.bearing_radius);
-        let [along_j, across_j] = of(pair.j, pair.s_j, clearance.journal_radius);
-        [along_i + along_j, across_i + across_j]
-    };
-    model.clearances().iter().map(both).collect()
+    let [along_i, across_i] = of(clearance.pair.i, arm_i, clearance.bearing_radius);
+    let [along_j, across_j] = of(clearance.pair.j, arm_j, clearance.journal_radius);
+    [along_i + along_j, across_i + across_j]
 }
 
 /// Square of the fastest pace (rad²/s²) that loads and courses of time give the bodies.
@@ -170,15 +180,18 @@ impl<S: Scalar> Mechanism<S> {
             *value = self.drive_torque(drive).to_f64();
         }
         for (source, value) in self.force_sources.iter().zip(magnitudes) {
-            let [x, y] = match *source {
-                ForceSource::Clearance(k) => now.touches[k].as_ref().map_or([0.0; 2], |touch| {
-                    [touch.force.on_journal.x.to_f64(), touch.force.on_journal.y.to_f64()]
-                }),
-                ForceSource::Driven(place) => {
+            let [x, y] = match source {
+                ForceSource::Clearances(own) => {
+                    now.touches[own.clone()].iter().flatten().fold([0.0; 2], |[x, y], touch| {
+                        let force = touch.force.on_journal;
+                        [x + force.x.to_f64(), y + force.y.to_f64()]
+                    })
+                }
+                &ForceSource::Driven(place) => {
                     let force = now.driving[place].0;
                     [force.x.to_f64(), force.y.to_f64()]
                 }
-                ForceSource::Constraint(index) => {
+                &ForceSource::Constraint(index) => {
                     let (row, arms) = (&self.layout.constraints[index], &now.arms[index]);
                     let (slopes, lambda) = (&now.jacobian[row.range()], &now.lambda[row.range()]);
                     let force = row.constraint.on_second(arms, slopes, lambda).force;
@@ -189,15 +202,23 @@ impl<S: Scalar> Mechanism<S> {
         }
     }
 
+    /// What [`mobilities`] tells of a point before a wall, which moves along the first body.
+    pub(super) fn mobility_before_wall(&self, law: &Clearance<S>, gap: &Gap<S>) -> [f64; 2] {
+        mobility(&self.model, &self.layout, law, [gap.arm_i, gap.arm_j])
+    }
+
     /// Square of the fastest pace (rad²/s²) of the motion at the state last evaluated: that of
     /// contacts that swing on their stiffness, or on that of bristles, or of turning bodies against
     /// each other.
     #[inline]
     pub fn pace_squared(&self) -> f64 {
-        let touches = self.now.touches.iter().zip(&self.mobilities);
-        let swing = touches.fold(0.0, |sum, (touch, mobility)| match touch {
+        let touches = self.now.touches.iter().zip(&self.mobilities).enumerate();
+        let swing = touches.fold(0.0, |sum, (k, (touch, mobility))| match touch {
             Some(touch) => {
-                let [along, across] = mobility;
+                let [along, across] = match mobility {
+                    Some(mobility) => *mobility,
+                    None => self.mobility_before_wall(&self.model.clearances()[k], &touch.gap),
+                };
                 let bristles = touch.force.tangential_slopes()[0].to_f64().abs();
                 sum + along * touch.force.normal.swing.to_f64().abs() + across * bristles
             }

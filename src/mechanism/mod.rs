@@ -56,8 +56,9 @@ pub struct Mechanism<S> {
     start: Snapshot<S>,
     start_energy: S,
     start_accuracy: f64,
-    /// Where journals are to start in their bearings (m); empty for the middle.
-    wished_offsets: Vec<Vector<S>>,
+    /// Where journals, blocks and pins are to start, by joint with clearance: what Φ of the ideal joint
+    /// is to be (m, rad); empty for the middle.
+    wished_offsets: Vec<[S; 2]>,
     coordinate_scales: Vec<f64>,
     velocity_scales: Vec<f64>,
     /// Places in z of the inner states of each clearance's friction.
@@ -70,8 +71,9 @@ pub struct Mechanism<S> {
     force_sources: Vec<ForceSource>,
     /// Friction in ideal joints.
     rubbings: Vec<Rubbing<S>>,
-    /// Mobility of each clearance along and across the line of centres (1/kg).
-    mobilities: Vec<[f64; 2]>,
+    /// Mobility of each clearance along and across the line of centres (1/kg); `None` before a wall,
+    /// where it changes.
+    mobilities: Vec<Option<[f64; 2]>>,
     /// Square of the fastest pace (rad²/s²) that loads and courses give.
     given_pace: f64,
     now: Evaluation<S>,
@@ -163,15 +165,13 @@ impl<S: Scalar> Mechanism<S> {
         Mechanism::with_journals_at(model, &[])
     }
 
-    /// The same with journals that start as near as can be to places in their bearings: offsets of
-    /// their centres (m, fixed frame), in the order of the clearances; none for the middle.
+    /// The same with journals that start as near as can be to places in their bearings, by joint with
+    /// clearance: what the two rows of the ideal joint's Φ are to be, offsets (m, fixed frame) of
+    /// a journal, offset and tilt (m, rad) of a block; none for the middle.
     ///
     /// # Errors
     /// See [`Mechanism::new`].
-    pub fn with_journals_at(
-        model: Model<S>,
-        offsets: &[Vector<f64>],
-    ) -> Result<Self, Vec<Complaint>> {
+    pub fn with_journals_at(model: Model<S>, offsets: &[[f64; 2]]) -> Result<Self, Vec<Complaint>> {
         let layout = Layout::new(&model)?;
         let mut inverse_masses = Vec::with_capacity(layout.coordinates);
         for (body, role) in layout.roles.iter().enumerate() {
@@ -203,10 +203,7 @@ impl<S: Scalar> Mechanism<S> {
             inverse_masses,
             coordinate_scales: Vec::new(),
             velocity_scales: Vec::new(),
-            wished_offsets: offsets
-                .iter()
-                .map(|offset| Vector::new(S::from_f64(offset.x), S::from_f64(offset.y)))
-                .collect(),
+            wished_offsets: offsets.iter().map(|offset| offset.map(S::from_f64)).collect(),
             inner_places,
             load_places,
             inner_scales,

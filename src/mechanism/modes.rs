@@ -42,11 +42,11 @@ impl<S: Scalar> Mechanism<S> {
             let law = &self.model.clearances()[k];
             let gap = self.now.gap(k, law);
             let (place, pace) = self.rounding(k, &gap);
-            if self.model.contacts()[k].is_some() && gap.eccentricity > S::zero() {
+            if self.model.contacts()[k].is_some() && !law.is_centred(&gap) {
                 self.begin_contact(k);
                 continue;
             }
-            if gap.depth.to_f64() < -place || gap.eccentricity == S::zero() {
+            if gap.depth.to_f64() < -place || law.is_centred(&gap) {
                 continue;
             }
             let rate = law.rates(&gap, &self.now.motions).rate.to_f64();
@@ -93,7 +93,10 @@ impl<S: Scalar> Mechanism<S> {
         };
         let speeds = speed(law.pair.i, gap.arm_i) + speed(law.pair.j, gap.arm_j);
         // the normal turns by the rounding of the offset
-        let turned = place / gap.eccentricity.to_f64();
+        let turned = match law.wall {
+            None => place / gap.eccentricity.to_f64(),
+            Some(_) => unit,
+        };
         (place, unit * speeds + turned * gap.offset_rate.norm().to_f64())
     }
 

@@ -3,10 +3,10 @@
 use super::layout::Role;
 use super::{
     BodyObservation, ClearanceObservation, EnergyObservation, JointObservation, Mechanism,
-    Observation, PointObservation,
+    Observation, PointObservation, Touch,
 };
 use crate::clearance::Mode;
-use crate::model::{Owner, Point};
+use crate::model::{Joint, Owner, Point};
 use crate::plane::{Vector, Wrench};
 use crate::scalar::Scalar;
 
@@ -93,11 +93,8 @@ impl<S: Scalar> Mechanism<S> {
 
     fn observe_joint(&self, index: usize) -> JointObservation {
         let joint = &self.model.joints()[index];
-        if let Some(k) = joint.clearance {
-            return self.now.touches[k].as_ref().map_or_else(JointObservation::default, |touch| {
-                let moment = self.model.clearances()[k].journal_radius * touch.force.tangential;
-                JointObservation { force: doubles(touch.force.on_journal), moment: moment.to_f64() }
-            });
+        if joint.is_loose() {
+            return self.observe_contacts(joint);
         }
         let driven = self.layout.driven.iter().position(|driven| driven.joint == index);
         let wrench = match driven {
@@ -116,6 +113,20 @@ impl<S: Scalar> Mechanism<S> {
             }
         };
         JointObservation { force: doubles(wrench.force), moment: wrench.moment.to_f64() }
+    }
+
+    /// Force and moment of the contacts of a joint on its second body, at the joint's point there.
+    fn observe_contacts(&self, joint: &Joint<S>) -> JointObservation {
+        let pair = &joint.ends.pair;
+        let at = self.now.poses[pair.j].rotate(pair.s_j);
+        let mut sum = Wrench::none();
+        for k in joint.clearances.clone() {
+            let Some(Touch { gap, force, .. }) = &self.now.touches[k] else { continue };
+            let moment = self.model.clearances()[k].journal_radius * force.tangential;
+            let turned = (gap.arm_j - at).cross(force.on_journal);
+            sum += Wrench { force: force.on_journal, moment: moment + turned };
+        }
+        JointObservation { force: doubles(sum.force), moment: sum.moment.to_f64() }
     }
 
     fn observe_energy(&self, integrals: &[S]) -> EnergyObservation {

@@ -24,9 +24,9 @@ use super::Mechanism;
 use super::layout::{Role, Row};
 use crate::clearance::Mode;
 use crate::dae::{Fault, State, System};
-use crate::joint::{Blocks, Constraint, MOST_BODIES, MOST_ROWS, Revolute};
+use crate::joint::{Blocks, Constraint, MOST_BODIES, MOST_ROWS};
 use crate::linear::{self, Cascade, nearest};
-use crate::model::{Complaint, KeyPath, Owner, Start};
+use crate::model::{Complaint, Joint, KeyPath, Owner, Start};
 use crate::scalar::Scalar;
 
 /// Speeds and rates less than this share of others, or than this many rad/s, are none.
@@ -255,14 +255,15 @@ impl<S: Scalar> Mechanism<S> {
         weights
     }
 
-    /// The clearances as joints that would centre their journals.
+    /// The joints with clearance as the ideal ones that would centre their journals.
     fn centring(&self) -> Vec<Row<S>> {
-        (self.model.clearances().iter())
-            .map(|clearance| Row {
-                constraint: Constraint::Revolute(Revolute { pair: clearance.pair }),
+        (self.model.joints().iter().enumerate())
+            .filter(|(_, joint)| joint.is_loose())
+            .map(|(index, joint)| Row {
+                constraint: Constraint::joint(joint.relation, &joint.ends),
                 first: 0,
-                rows: 2,
-                owner: Owner::Joint(0),
+                rows: joint.relation.rows(),
+                owner: Owner::Joint(index),
             })
             .collect()
     }
@@ -379,11 +380,19 @@ impl<S: Scalar> Mechanism<S> {
         let mut conditions = self.conditions(&weights, &away, fixed, from_fixed, |row, error| {
             row.constraint.position_error(self.now.time, &self.now.poses, error);
         });
-        let offsets = self.wished_offsets.iter().flat_map(|offset| [offset.x, offset.y]);
-        for (row, offset) in conditions.wished.iter_mut().zip(offsets) {
-            row.error -= offset;
+        let mut wished = conditions.wished.iter_mut();
+        for (joint, offset) in self.centring().iter().zip(&self.wished_offsets) {
+            for (r, offset) in offset.iter().enumerate().take(joint.rows) {
+                let size = self.row_size(joint, r);
+                wished.next().into_iter().for_each(|row| row.error -= *offset * size);
+            }
         }
         conditions
+    }
+
+    /// The length (m) that a row counts for: of angles the mechanism's.
+    fn row_size(&self, row: &Row<S>, r: usize) -> S {
+        if row.constraint.is_angle(r) { S::from_f64(self.length) } else { S::one() }
     }
 
     /// Conditions as placed: how far each unknown is `away` from where it would be left, the value
@@ -408,10 +417,7 @@ impl<S: Scalar> Mechanism<S> {
                 error(row, &mut errors);
                 let all = self.coefficients(&row.constraint);
                 for (r, (mut coefficients, error)) in all.into_iter().zip(errors).enumerate() {
-                    let size = match row.constraint.is_angle(r) {
-                        true => S::from_f64(self.length),
-                        false => S::one(),
-                    };
+                    let size = self.row_size(row, r);
                     coefficients.iter_mut().for_each(|(k, a)| *a = *a * scales[*k] * size);
                     out.push(linear::Row { coefficients, error: error * size });
                 }
@@ -466,8 +472,9 @@ impl<S: Scalar> Mechanism<S> {
         for row in &self.layout.constraints {
             add(&row.constraint, &multipliers.x()[row.range()]);
         }
-        for (row, errors) in self.centring().iter().zip(conditions.wished.chunks(2)) {
-            let errors: Vec<S> = errors.iter().map(|row| row.error).collect();
+        let mut errors = conditions.wished.iter().map(|row| row.error);
+        for row in self.centring() {
+            let errors: Vec<S> = errors.by_ref().take(row.rows).collect();
             add(&row.constraint, &errors);
         }
         bend
@@ -603,8 +610,9 @@ impl<S: Scalar> Mechanism<S> {
             (depth < -1e-9 * self.length).then(|| Complaint {
                 key: KeyPath::new(["start", "contact"]),
                 message: format!(
-                    "has joint {:?} in contact, but its journal is {:.6e} m off the wall",
+                    "has joint {:?} in contact, but its {} is {:.6e} m off the wall",
                     self.model.names().clearances[k],
+                    clearance.surfaces()[0],
                     -depth
                 ),
             })
@@ -615,23 +623,27 @@ impl<S: Scalar> Mechanism<S> {
     /// Complaints of journals that end up outside their clearance although nothing is fixed.
     fn overlaps(&self) -> Vec<Complaint> {
         let joints = self.model.joints().iter().enumerate();
-        joints
-            .filter_map(|(index, joint)| {
-                let k = joint.clearance?;
-                let clearance = &self.model.clearances()[k];
-                let gap = self.now.gap(k, clearance);
-                (gap.depth > S::zero()).then(|| Complaint {
-                    key: Owner::Joint(index).key(self.model.names()),
-                    message: format!(
-                        "does not close: the journal is {:.6e} m from the bearing's centre in \
-                         the best assembly found, the radial clearance is {:.6e} m; check the \
-                         lengths and the poses under [start]",
-                        gap.eccentricity.to_f64(),
-                        clearance.radial.to_f64()
-                    ),
-                })
+        let deepest = |(index, joint): (usize, &Joint<S>)| {
+            let depth = |k: usize| self.now.gap(k, &self.model.clearances()[k]).depth.to_f64();
+            let k = joint.clearances.clone().max_by(|a, b| depth(*a).total_cmp(&depth(*b)))?;
+            let clearance = &self.model.clearances()[k];
+            let gap = self.now.gap(k, clearance);
+            let [inner, outer] = clearance.surfaces();
+            let (from, play) = match clearance.wall {
+                None => (format!("the {outer}'s centre"), "radial clearance"),
+                Some(_) => ("its nominal place".to_owned(), "play"),
+            };
+            (gap.depth > S::zero()).then(|| Complaint {
+                key: Owner::Joint(index).key(self.model.names()),
+                message: format!(
+                    "does not close: the {inner} is {:.6e} m from {from} in the best assembly found, \
+                     the {play} is {:.6e} m; check the lengths and the poses under [start]",
+                    gap.eccentricity.to_f64(),
+                    clearance.radial.to_f64()
+                ),
             })
-            .collect()
+        };
+        joints.filter_map(deepest).collect()
     }
 
     fn assemble_velocities(&mut self, q: &[S]) -> Result<(Vec<S>, Solved), Vec<Complaint>> {

@@ -1,6 +1,5 @@
 //! The mechanism as every engine sees it.
 
-use super::layout::Role;
 use super::{Mechanism, inner_states};
 use crate::clearance::{Bodies, Clearance, EventSlot, Gap, Mode};
 use crate::contact::Penetration;
@@ -202,7 +201,12 @@ impl<S: Scalar> System<S> for Mechanism<S> {
     fn offsets_at(&mut self, state: State<'_, S>, offsets: &mut [Vector<S>]) {
         self.place(&state);
         for (k, offset) in offsets.iter_mut().enumerate() {
-            *offset = self.offset(k);
+            let gap = self.now.gap(k, &self.model.clearances()[k]);
+            let centred = self.is_nearly_centred(k, &gap);
+            *offset = match centred {
+                true => Vector::zero(),
+                false => self.model.clearances()[k].carried(&gap),
+            };
         }
     }
 
@@ -210,8 +214,8 @@ impl<S: Scalar> System<S> for Mechanism<S> {
         let now = &self.now;
         for ((k, clearance), rate) in self.model.clearances().iter().enumerate().zip(rates) {
             *rate = match &now.touches[k] {
-                Some(touch) => touch.gap.offset_rate,
-                None => now.gap(k, clearance).offset_rate,
+                Some(touch) => clearance.carried_rate(&touch.gap),
+                None => clearance.carried_rate(&now.gap(k, clearance)),
             };
         }
     }
@@ -263,13 +267,11 @@ impl<S: Scalar> Mechanism<S> {
             inverse_impact_rate: S::zero(),
         };
         let slope = law.normal.force(pressed).d_depth.to_f64();
-        let pair = &law.pair;
-        let mobility = [(pair.i, pair.s_i), (pair.j, pair.s_j)].map(|(body, arm)| {
-            let Role::Free(at) = self.layout.roles[body] else { return 0.0 };
-            let [translation, rotation] = [at, at + 2].map(|i| self.inverse_masses[i].to_f64());
-            translation + arm.dot(arm).to_f64() * rotation
-        });
-        slope * (mobility[0] + mobility[1])
+        let [along, _] = match self.mobilities[clearance] {
+            Some(mobility) => mobility,
+            None => self.mobility_before_wall(law, &self.now.gap(clearance, law)),
+        };
+        slope * along
     }
 
     /// Penetration rate and slip velocity (m/s) of a clearance at the state last evaluated; zero
@@ -277,7 +279,7 @@ impl<S: Scalar> Mechanism<S> {
     pub fn gap_rates(&self, clearance: usize) -> (S, S) {
         let law = &self.model.clearances()[clearance];
         let gap = self.now.gap(clearance, law);
-        if gap.eccentricity == S::zero() {
+        if law.is_centred(&gap) {
             return (S::zero(), S::zero());
         }
         let rates = law.rates(&gap, &self.now.motions);
@@ -288,16 +290,22 @@ impl<S: Scalar> Mechanism<S> {
     /// centred journal.
     pub(super) fn offset(&self, clearance: usize) -> Vector<S> {
         let gap = self.now.gap(clearance, &self.model.clearances()[clearance]);
-        let rounding = 2.0 * S::EPSILON * self.gap_size(clearance, &gap);
-        let centred = gap.eccentricity.to_f64() <= rounding && !S::CARRIES_DERIVATIVE;
-        if centred { Vector::zero() } else { gap.offset }
+        if self.is_nearly_centred(clearance, &gap) { Vector::zero() } else { gap.offset }
+    }
+
+    /// Whether an offset, as placed, is nothing but rounding.
+    fn is_nearly_centred(&self, clearance: usize, gap: &Gap<S>) -> bool {
+        let rounding = 2.0 * S::EPSILON * self.gap_size(clearance, gap);
+        gap.eccentricity.abs().to_f64() <= rounding && !S::CARRIES_DERIVATIVE
     }
 
     /// Sum of the lengths that an offset is a difference of (m).
     pub(super) fn gap_size(&self, clearance: usize, gap: &Gap<S>) -> f64 {
-        let pair = &self.model.clearances()[clearance].pair;
-        let [at_i, at_j] = [pair.i, pair.j].map(|body| self.now.poses[body].position);
-        [at_i, at_j, gap.arm_i, gap.arm_j].into_iter().fold(0.0, |sum, x| sum + x.norm().to_f64())
+        let law = &self.model.clearances()[clearance];
+        let [at_i, at_j] = [law.pair.i, law.pair.j].map(|body| self.now.poses[body].position);
+        let sum =
+            [at_i, at_j, gap.arm_i, gap.arm_j].into_iter().map(|x| x.norm().to_f64()).sum::<f64>();
+        sum + law.wall.map_or(0.0, |wall| (law.pair.s_i.norm() + wall.nominal.abs()).to_f64())
     }
 
     /// The bodies with unknowns, and their places in q and v.

@@ -1,11 +1,10 @@
 //! Everything about a description that can be checked without mechanics: names, ranges, and
 //! whether what is named exists.
 
-use super::normal_law;
 use super::{
     BodyDescription, ClearanceDescription, Complaint, Complaints, DampingDescription, Description,
     DriveDescription, JointDescription, KeyPath, LoadDescription, NamedPoint, NormalDescription,
-    StartDescription, shortened,
+    Play, StartDescription, normal_law, shortened,
 };
 use crate::contact::Damping;
 use crate::contact::elastic::{self, ElasticLaw};
@@ -35,6 +34,7 @@ pub fn check(description: &Description) -> Vec<Complaint> {
     for joint in &description.joints {
         check_joint(&mut complaints, description, joint);
     }
+    check_members(&mut complaints, description);
     check_drives(&mut complaints, description);
     check_names(
         &mut complaints,
@@ -115,6 +115,24 @@ fn check_joint(complaints: &mut Complaints, description: &Description, joint: &J
     check_part(complaints, description, &key, &joint.part);
     if let Some(clearance) = &joint.clearance {
         check_clearance(complaints, description, &key.key("clearance"), clearance);
+    }
+}
+
+/// A corner or a flank has a name of its own, which is that of no joint.
+fn check_members(complaints: &mut Complaints, description: &Description) {
+    let mut seen: HashSet<String> =
+        description.joints.iter().map(|joint| joint.name.clone()).collect();
+    for joint in &description.joints {
+        for member in joint.members().into_iter().filter(|member| *member != joint.name) {
+            if !seen.insert(member.clone()) {
+                let key = KeyPath::new(["joints", &joint.name]);
+                let message = format!(
+                    "would give one of its walls the name {:?}, which is taken",
+                    shortened(&member)
+                );
+                complaints.add(key, message);
+            }
+        }
     }
 }
 
@@ -312,23 +330,19 @@ fn check_clearance(
     key: &KeyPath,
     clearance: &ClearanceDescription,
 ) {
-    let (bearing, radial) = (&clearance.bearing_radius, &clearance.radial);
-    let bearing_right = complaints.require_positive(key.key("bearing_radius"), bearing, "m");
-    let radial_right = complaints.require_positive(key.key("radial"), radial, "m");
-    if bearing_right && radial_right && radial.to_f64() >= bearing.to_f64() {
-        let message = format!("must be less than bearing_radius, {bearing} (m), is {radial}");
-        complaints.add(key.key("radial"), message);
-    }
+    let is_sound = check_play(complaints, key, &clearance.play);
     let rate = &clearance.minimum_impact_rate;
     complaints.require_positive(key.key("minimum_impact_rate"), rate, "m/s");
     let share = &clearance.maximum_penetration;
-    let range = "a share of the journal's radius, greater than 0 and at most 1";
+    let range = match &clearance.play {
+        Play::Bearing { .. } => "a share of the journal's radius, greater than 0 and at most 1",
+        _ => "a share, greater than 0 and at most 1",
+    };
     let holds = |share: f64| share > 0.0 && share <= 1.0;
     complaints.require(key.key("maximum_penetration"), share, "", range, holds);
     let before = complaints.len();
     check_normal(complaints, description, &key.key("normal"), &clearance.normal);
-    let is_inside = bearing_right && radial_right && radial.to_f64() < bearing.to_f64();
-    if is_inside && complaints.len() == before {
+    if is_sound && complaints.len() == before {
         check_elastic(complaints, &key.key("normal"), clearance);
     }
     if let Some(friction) = &clearance.friction {
@@ -336,11 +350,47 @@ fn check_clearance(
     }
 }
 
+/// Lengths of a clearance are positive, and fit each other.
+fn check_play(complaints: &mut Complaints, key: &KeyPath, play: &Play) -> bool {
+    let mut positive =
+        |name: &str, length: &Decimal| complaints.require_positive(key.key(name), length, "m");
+    match play {
+        Play::Bearing { bearing_radius, radial } => {
+            let right = positive("bearing_radius", bearing_radius) & positive("radial", radial);
+            if right && radial.to_f64() >= bearing_radius.to_f64() {
+                let than = format!("must be less than bearing_radius, {bearing_radius} (m)");
+                complaints.add(key.key("radial"), format!("{than}, is {radial}"));
+                return false;
+            }
+            right
+        }
+        Play::Guide { gap, length, height, corner_radius } => {
+            let corner = corner_radius.as_ref().is_none_or(|r| positive("corner_radius", r));
+            corner & positive("gap", gap) & positive("length", length) & positive("height", height)
+        }
+        Play::Slot { gap, pin_radius } => positive("gap", gap) & positive("pin_radius", pin_radius),
+    }
+}
+
 /// Radii and materials in range may yet be none that the law is for, or come to a stiffness that is no
 /// number.
 fn check_elastic(complaints: &mut Complaints, key: &KeyPath, clearance: &ClearanceDescription) {
-    let (bearing, radial) = (clearance.bearing_radius.to_f64(), clearance.radial.to_f64());
-    let Some(law) = normal_law::<f64>(&clearance.normal, bearing, bearing - radial) else { return };
+    let (radial, elastic) = (clearance.play().1.to_f64(), &clearance.normal.elastic);
+    if !matches!(clearance.play, Play::Bearing { .. }) && !elastic.is(elastic::POWER.word) {
+        let message = "is the law of a cylinder in a bearing: corners and pins before straight walls \
+                       take the power law";
+        return complaints.add(key.key("elastic"), message);
+    }
+    if let Play::Guide { corner_radius: None, .. } = &clearance.play
+        && !elastic.text("stiffness").is_empty()
+    {
+        let message = format!(
+            "{:?} needs clearance.corner_radius (m), or give a number (N/mⁿ)",
+            elastic.text("stiffness")
+        );
+        return complaints.add(key.key("stiffness"), message);
+    }
+    let Some(law) = normal_law::<f64>(&clearance.normal, &clearance.ends()) else { return };
     if let Some(objection) = law.elastic().objection() {
         return complaints.add(key.key("elastic"), objection);
     }
@@ -521,7 +571,8 @@ fn check_starts(complaints: &mut Complaints, description: &Description) {
     }
 }
 
-/// The contacts that a start is in are in joints with clearance, each once; the clock is a time.
+/// The contacts that a start is in are in clearances, by the names of these, each once; the clock is
+/// a time.
 fn check_open_contacts(complaints: &mut Complaints, description: &Description) {
     let start = KeyPath::new(["start"]);
     if let Some(clock) = &description.clock {
@@ -532,10 +583,16 @@ fn check_open_contacts(complaints: &mut Complaints, description: &Description) {
         let key = start.key("contact").key((k + 1).to_string());
         complaints.require_finite(key.key("impact_rate"), rate, "m/s");
         let key = key.key("joint");
-        check_joint_name(complaints, description, key.clone(), joint);
         let known = description.joints.iter().find(|known| known.name == *joint);
+        let members: Vec<String> =
+            description.joints.iter().flat_map(JointDescription::members).collect();
         if known.is_some_and(|known| known.clearance.is_none()) {
             complaints.add(key, format!("joint {joint:?} has no clearance to be in contact in"));
+        } else if known.is_some() && !members.contains(joint) {
+            let one = format!("{joint}_1");
+            complaints.add(key, format!("joint {joint:?} touches in {one:?} and others: name one"));
+        } else if !members.contains(joint) {
+            check_joint_name(complaints, description, key, joint);
         } else if !seen.insert(joint) {
             complaints.add(key, format!("names joint {joint:?} twice"));
         }

@@ -4,8 +4,10 @@
 //! description and reads its numbers into an arithmetic.
 
 use crate::contact::Damping;
+use crate::contact::elastic::Ends;
+use crate::joint::{PIN_SLOT, PRISMATIC};
 use crate::parameter::Values;
-use crate::scalar::Decimal;
+use crate::scalar::{Decimal, Scalar};
 
 /// A mechanism, unchecked. The order of each list is the order of the case file.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -74,8 +76,8 @@ pub struct JointDescription {
     pub name: String,
     /// Its kind and keys.
     pub part: Values,
-    /// Of a revolute joint: bearing on the first point, journal on the second. Left out: an ideal
-    /// joint.
+    /// Of a revolute joint: bearing on the first point, journal on the second; of a prismatic one guide
+    /// and block, of a slot its flanks and the pin. Left out: an ideal joint.
     pub clearance: Option<ClearanceDescription>,
 }
 
@@ -84,25 +86,98 @@ impl JointDescription {
     pub fn between(&self) -> [&str; 2] {
         self.part.pair("between")
     }
+
+    /// Names of what may touch in it: the joint's own for a journal, `NAME_1` to `NAME_4` for the
+    /// corners of a block at (+,+), (−,+), (−,−), (+,−) of its length and height, `NAME_1` and `NAME_2`
+    /// for the flanks of a slot on the left and on the right of its axis.
+    pub fn members(&self) -> Vec<String> {
+        match self.clearance {
+            Some(_) => members(&self.name, self.part.kind().word),
+            None => Vec::new(),
+        }
+    }
 }
 
-/// A clearance between journal and bearing.
+/// Names of what may touch in a joint of a kind that has clearance ([`JointDescription::members`]).
+pub fn members(joint: &str, kind: &str) -> Vec<String> {
+    let count = match kind {
+        PRISMATIC => 4,
+        PIN_SLOT => 2,
+        _ => return vec![joint.to_owned()],
+    };
+    (1..=count).map(|k| format!("{joint}_{k}")).collect()
+}
+
+/// Which play a joint leaves.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Play {
+    /// A journal in a bearing.
+    Bearing {
+        /// Radius of the bearing (m).
+        bearing_radius: Decimal,
+        /// Radial clearance c (m).
+        radial: Decimal,
+    },
+    /// A block between the walls of a guide.
+    Guide {
+        /// Play on each side (m).
+        gap: Decimal,
+        /// Length of the block along the axis (m).
+        length: Decimal,
+        /// Its height across it (m).
+        height: Decimal,
+        /// Radius of its corners (m), for the stiffness alone.
+        corner_radius: Option<Decimal>,
+    },
+    /// A pin between the flanks of a slot.
+    Slot {
+        /// Play on each side (m).
+        gap: Decimal,
+        /// Radius of the pin (m).
+        pin_radius: Decimal,
+    },
+}
+
+/// A clearance and what happens in it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ClearanceDescription {
-    /// Radius of the bearing (m).
-    pub bearing_radius: Decimal,
-    /// Radial clearance c (m).
-    pub radial: Decimal,
+    /// What may move how far.
+    pub play: Play,
     /// Law of the normal force.
     pub normal: NormalDescription,
     /// Whether a contact force may pull.
     pub tension: Tension,
     /// Smallest impact rate that the damping is scaled by (m/s).
     pub minimum_impact_rate: Decimal,
-    /// Largest penetration that the law is believed for, as a share of the journal's radius.
+    /// Largest penetration that the law is believed for, as a share of the size of what touches
+    /// ([`Clearance::size`](crate::clearance::Clearance::size)).
     pub maximum_penetration: Decimal,
     /// Law of the tangential force; `None` without friction.
     pub friction: Option<Values>,
+}
+
+impl ClearanceDescription {
+    /// The play on each side (m), and the name of its key.
+    pub fn play(&self) -> (&'static str, &Decimal) {
+        match &self.play {
+            Play::Bearing { radial, .. } => ("radial", radial),
+            Play::Guide { gap, .. } | Play::Slot { gap, .. } => ("gap", gap),
+        }
+    }
+
+    /// The radii that a law of the normal force may go by.
+    pub fn ends<S: Scalar>(&self) -> Ends<S> {
+        match &self.play {
+            Play::Bearing { bearing_radius, radial } => {
+                let bearing: S = bearing_radius.value();
+                Ends { bearing, journal: bearing - radial.value() }
+            }
+            Play::Guide { corner_radius, .. } => {
+                Ends::on_a_plane(corner_radius.as_ref().map_or(S::zero(), Decimal::value))
+            }
+            Play::Slot { pin_radius, .. } => Ends::on_a_plane(pin_radius.value()),
+        }
+    }
 }
 
 /// What happens where a contact law gives a tensile force (key `tension`).
@@ -128,9 +203,11 @@ pub struct NormalDescription {
 }
 
 impl Description {
-    /// The clearance of a joint, if it has one.
-    pub fn clearance(&self, joint: &str) -> Option<&ClearanceDescription> {
-        self.joints.iter().find(|known| known.name == joint)?.clearance.as_ref()
+    /// What a clearance, by its own name ([`JointDescription::members`]), is described by.
+    pub fn clearance(&self, name: &str) -> Option<&ClearanceDescription> {
+        let mut joints = self.joints.iter();
+        let its = |joint: &&JointDescription| joint.members().iter().any(|member| member == name);
+        joints.find(its)?.clearance.as_ref()
     }
 }
 

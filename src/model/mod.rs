@@ -15,7 +15,7 @@ pub use complaint::*;
 pub use description::*;
 pub use owner::Owner;
 
-use crate::clearance::Clearance;
+use crate::clearance::{Clearance, Wall};
 use crate::contact::elastic::{self, Elastic, ElasticLaw};
 use crate::contact::viscous::{self, Viscous};
 use crate::contact::{Damping, NormalLaw};
@@ -26,6 +26,7 @@ use crate::load::{self, Load};
 use crate::parameter::{Takes, Value, Values};
 use crate::plane::Vector;
 use crate::scalar::{Decimal, F256, Scalar};
+use std::ops::Range;
 
 /// A joint of a model.
 #[derive(Debug, Clone)]
@@ -34,8 +35,16 @@ pub struct Joint<S> {
     pub relation: Relation<S>,
     /// Where it sits.
     pub ends: joint::Ends<S>,
-    /// Index of its clearance; `None` for an ideal joint.
-    pub clearance: Option<usize>,
+    /// What may touch in it, by index among the clearances: one journal, two flanks, four corners;
+    /// nothing in an ideal joint.
+    pub clearances: Range<usize>,
+}
+
+impl<S> Joint<S> {
+    /// Whether it has clearance.
+    pub fn is_loose(&self) -> bool {
+        !self.clearances.is_empty()
+    }
 }
 
 /// A drive of a model.
@@ -74,12 +83,28 @@ pub struct Names {
     pub bodies: Vec<String>,
     /// Joints.
     pub joints: Vec<String>,
-    /// Clearances, by the name of their joint.
+    /// Clearances, by the name of their joint; in a guide or a slot with the number of its corner or
+    /// flank: `slide_1`.
     pub clearances: Vec<String>,
+    /// Index of the joint of each clearance.
+    pub loose: Vec<usize>,
     /// Drives.
     pub drives: Vec<String>,
     /// Points that are observed, as `coupler.P`.
     pub points: Vec<String>,
+}
+
+impl Names {
+    /// The joint that a clearance is in, by its own name: `slide` of `slide_1`, where that is no joint
+    /// itself.
+    pub fn joint_of<'a>(&self, clearance: &'a str) -> &'a str {
+        let joint = match clearance.rsplit_once('_') {
+            Some((joint, number)) if number.parse::<u8>().is_ok() => joint,
+            _ => return clearance,
+        };
+        let known = |name: &str| self.joints.iter().any(|known| known == name);
+        if known(clearance) || !known(joint) { clearance } else { joint }
+    }
 }
 
 /// A mechanism whose every number is in range and whose every reference leads somewhere.
@@ -123,16 +148,13 @@ impl<S: Scalar> Model<S> {
         for joint in &description.joints {
             let sites = Sites::of(description, &frame, &joint.part);
             let ends = joint::Ends { pair: sites.pair, third: sites.third };
-            let clearance = match &joint.clearance {
-                Some(clearance) => {
-                    let read = read_clearance(ends.pair, clearance);
-                    clearances.push(known("joints", &joint.name, read)?);
-                    Some(clearances.len() - 1)
-                }
-                None => None,
-            };
             let relation = known("joints", &joint.name, Relation::new(&joint.part, &ends))?;
-            joints.push(Joint { relation, ends, clearance });
+            let first = clearances.len();
+            if let Some(clearance) = &joint.clearance {
+                let read = read_clearance(&relation, ends.pair, clearance);
+                clearances.extend(known("joints", &joint.name, read)?);
+            }
+            joints.push(Joint { relation, ends, clearances: first..clearances.len() });
         }
         let clock = description.clock.as_ref().map_or(S::zero(), Decimal::value);
         let drives = description.drives.iter().map(|drive| {
@@ -256,12 +278,16 @@ impl<S: Scalar> Model<S> {
 }
 
 fn names(description: &Description) -> Names {
-    let has_clearance = |joint: &&JointDescription| joint.clearance.is_some();
     let joints = || description.joints.iter();
+    let members = joints()
+        .enumerate()
+        .flat_map(|(index, joint)| joint.members().into_iter().map(move |member| (member, index)));
+    let (clearances, loose) = members.unzip();
     Names {
         bodies: description.bodies.iter().map(|body| body.name.clone()).collect(),
         joints: joints().map(|joint| joint.name.clone()).collect(),
-        clearances: joints().filter(has_clearance).map(|joint| joint.name.clone()).collect(),
+        clearances,
+        loose,
         drives: description.drives.iter().map(|drive| drive.name.clone()).collect(),
         points: description.observed.clone(),
     }
@@ -383,32 +409,89 @@ impl<S: Scalar> Sites<S> {
     }
 }
 
+/// What may touch in a joint, in the order of [`JointDescription::members`].
 fn read_clearance<S: Scalar>(
+    relation: &Relation<S>,
     pair: Pair<S>,
     clearance: &ClearanceDescription,
-) -> Option<Clearance<S>> {
-    let bearing_radius: S = clearance.bearing_radius.value();
-    let radial: S = clearance.radial.value();
-    let journal_radius = bearing_radius - radial;
-    Some(Clearance {
+) -> Option<Vec<Clearance<S>>> {
+    let half = S::from_f64(0.5);
+    let plain = Clearance {
         pair,
-        bearing_radius,
-        journal_radius,
-        radial,
-        normal: normal_law(&clearance.normal, bearing_radius, journal_radius)?,
+        wall: None,
+        bearing_radius: S::zero(),
+        journal_radius: S::zero(),
+        radial: S::zero(),
+        size: S::zero(),
+        normal: normal_law(&clearance.normal, &clearance.ends())?,
         friction: clearance.friction.as_ref().and_then(friction_law),
         cut_tension: clearance.tension == Tension::Cut,
         minimum_impact_rate: clearance.minimum_impact_rate.value(),
         maximum_penetration: clearance.maximum_penetration.to_f64(),
-    })
+    };
+    let members = match (&clearance.play, relation) {
+        (Play::Bearing { bearing_radius, radial }, _) => {
+            let (bearing_radius, radial): (S, S) = (bearing_radius.value(), radial.value());
+            let journal_radius = bearing_radius - radial;
+            vec![Clearance {
+                bearing_radius,
+                journal_radius,
+                radial,
+                size: journal_radius,
+                ..plain
+            }]
+        }
+        (Play::Guide { gap, length, height, corner_radius }, Relation::Prismatic(guide)) => {
+            let (along, across): (S, S) = (half * length.value(), half * height.value());
+            let size = corner_radius.as_ref().map_or(across, Decimal::value);
+            let corner = |(along_sign, sign): (f64, f64)| {
+                let (normal, nominal) = (guide.across() * S::from_f64(sign), across);
+                let place =
+                    Vector::new(along * S::from_f64(along_sign), across * S::from_f64(sign));
+                let wall = Some(Wall {
+                    normal,
+                    own_normal: guide.on_the_block(Vector::new(S::zero(), S::from_f64(sign))),
+                    middle: pair.s_j,
+                    nominal,
+                    along: along * S::from_f64(along_sign * sign),
+                });
+                let pair = Pair { s_j: pair.s_j + guide.on_the_block(place), ..pair };
+                Clearance { pair, wall, radial: gap.value(), size, ..plain }
+            };
+            CORNERS.map(corner).to_vec()
+        }
+        (Play::Slot { gap, pin_radius }, Relation::PinSlot(slot)) => {
+            let radius: S = pin_radius.value();
+            let wall = |normal: Vector<S>| Wall {
+                normal,
+                own_normal: normal,
+                middle: pair.s_j,
+                nominal: S::zero(),
+                along: S::zero(),
+            };
+            let flank = |sign: f64| Clearance {
+                wall: Some(wall(slot.across() * S::from_f64(sign))),
+                bearing_radius: radius,
+                journal_radius: radius,
+                radial: gap.value(),
+                size: radius,
+                ..plain
+            };
+            [1.0, -1.0].map(flank).to_vec()
+        }
+        _ => return None,
+    };
+    Some(members)
 }
+
+/// The corners of a block by the signs of their places along and across the guide.
+const CORNERS: [(f64, f64); 4] = [(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)];
 
 fn normal_law<S: Scalar>(
     normal: &NormalDescription,
-    bearing: S,
-    journal: S,
+    ends: &elastic::Ends<S>,
 ) -> Option<NormalLaw<S>> {
-    let elastic = Elastic::new(&normal.elastic, &elastic::Ends { bearing, journal })?;
+    let elastic = Elastic::new(&normal.elastic, ends)?;
     let damping = match &normal.law {
         DampingDescription::Weight(damping) => damping,
         DampingDescription::Viscous(values) => {

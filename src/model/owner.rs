@@ -61,7 +61,12 @@ impl Owner {
     /// Its key in a case file.
     pub(crate) fn key(self, names: &Names) -> KeyPath {
         let table = match self {
-            Owner::Clearance(_) | Owner::Joint(_) => "joints",
+            // a corner or a flank has no keys of its own
+            Owner::Clearance(k) => match names.loose.get(k) {
+                Some(joint) => return Owner::Joint(*joint).key(names),
+                None => "joints",
+            },
+            Owner::Joint(_) => "joints",
             Owner::Drive(_) => "drives",
             Owner::Load(_) => "loads",
         };

@@ -186,6 +186,7 @@ pub(super) fn names_of(file: &ResultFile) -> Names {
         bodies: file.bodies().to_vec(),
         joints: file.joints().to_vec(),
         clearances: file.clearances().to_vec(),
+        loose: Vec::new(),
         drives: file.drives().to_vec(),
         points: file.points().to_vec(),
     }

@@ -101,7 +101,8 @@ impl Summary {
             let Quantity::JointForce(joint) = quantity else { continue };
             let names = &self.run.names;
             let name = &names.joints[joint];
-            let kind = if names.clearances.contains(name) { "clearance" } else { "ideal" };
+            let loose = names.clearances.iter().any(|clearance| names.joint_of(clearance) == name);
+            let kind = if loose { "clearance" } else { "ideal" };
             let reference = self.reference_of(quantity).and_then(|extremes| extremes.largest);
             let [ratio, _] = self.ratios(quantity, &tally.total);
             let mut row = vec![name.clone(), kind.to_owned()];

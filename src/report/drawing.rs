@@ -2,7 +2,7 @@
 
 use crate::case::{Case, Changes};
 use crate::course::Course;
-use crate::model::{Description, JointDescription, NamedPoint};
+use crate::model::{Description, JointDescription, NamedPoint, Play};
 use crate::record::ResultFile;
 use serde::Serialize;
 use std::path::Path;
@@ -43,7 +43,10 @@ struct DrawnJoint {
     pinion: Option<f64>,
     /// Whether a drive or a speed controller sits on it.
     driven: bool,
+    /// The circles of a bearing with clearance.
     clearance: Option<DrawnClearance>,
+    /// The straight walls of a guide or a slot with clearance.
+    walls: Option<DrawnWalls>,
 }
 
 /// A point by its body and its place among the body's points.
@@ -59,6 +62,35 @@ struct PointOnBody {
 struct DrawnClearance {
     bearing_radius: f64,
     radial: f64,
+}
+
+/// Two walls and what is between them (m).
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+struct DrawnWalls {
+    /// Play on each side.
+    gap: f64,
+    /// Length and height of a block, whose angle in the guide is `angle` (rad); else there is a pin.
+    block: Option<[f64; 2]>,
+    angle: f64,
+    /// Radius of a pin.
+    pin: Option<f64>,
+}
+
+fn circles_of(play: &Play) -> Option<DrawnClearance> {
+    let Play::Bearing { bearing_radius, radial } = play else { return None };
+    Some(DrawnClearance { bearing_radius: bearing_radius.to_f64(), radial: radial.to_f64() })
+}
+
+fn walls_of(play: &Play, joint: &JointDescription) -> Option<DrawnWalls> {
+    let (gap, block, pin) = match play {
+        Play::Bearing { .. } => return None,
+        Play::Guide { gap, length, height, .. } => {
+            (gap, Some([length.to_f64(), height.to_f64()]), None)
+        }
+        Play::Slot { gap, pin_radius } => (gap, None, Some(pin_radius.to_f64())),
+    };
+    let angle = if block.is_some() { joint.part.number("angle") } else { 0.0 };
+    Some(DrawnWalls { gap: gap.to_f64(), block, angle, pin })
 }
 
 impl Drawing {
@@ -126,10 +158,8 @@ fn joints_of(description: &Description) -> Option<Vec<DrawnJoint>> {
             pinion: joint.part.is("rack").then(|| joint.part.number("radius")),
             driven: description.drives.iter().any(|drive| drive.joint == joint.name)
                 || controlled().any(|controlled| controlled == joint.name),
-            clearance: joint.clearance.as_ref().map(|clearance| DrawnClearance {
-                bearing_radius: clearance.bearing_radius.to_f64(),
-                radial: clearance.radial.to_f64(),
-            }),
+            clearance: joint.clearance.as_ref().and_then(|clearance| circles_of(&clearance.play)),
+            walls: joint.clearance.as_ref().and_then(|clearance| walls_of(&clearance.play, joint)),
         })
     };
     description.joints.iter().map(joint).collect()

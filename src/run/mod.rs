@@ -112,13 +112,17 @@ pub enum Error<E: std::error::Error + 'static, R: std::error::Error + 'static> {
     Contradiction(#[source] Contradiction),
     /// A journal is so deep in its bearing that no contact law means anything.
     #[error(
-        "the journal of {clearance} is {depth:.4e} m deep in its bearing at t = {time:e} s; its \
+        "the {} of {clearance} is {depth:.4e} m deep in its {} at t = {time:e} s; its \
          contact law means nothing beyond {allowed:.4e} m, {why}. A mechanism that cannot turn, a stiffness in other units than \
-         N/m^n or a load far too large comes to this: `freeplay check` says which is likely"
+         N/m^n or a load far too large comes to this: `freeplay check` says which is likely",
+        .surfaces[0],
+        .surfaces[1]
     )]
     TooDeep {
         /// Key of the joint.
         clearance: String,
+        /// What touches, and what it touches.
+        surfaces: [&'static str; 2],
         /// Penetration (m).
         depth: f64,
         /// The largest that is believed (m).
@@ -467,6 +471,7 @@ where
         let model = self.engine.system().model();
         Error::TooDeep {
             clearance: format!("joints.{}", model.names().clearances[k]),
+            surfaces: model.clearances()[k].surfaces(),
             depth,
             allowed: self.allowed_depths[k],
             why: model.clearances()[k].believed_because(),

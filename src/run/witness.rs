@@ -26,8 +26,7 @@ const ENERGY: f64 = 0.25;
 pub enum Contradiction {
     /// Flight inside the wall.
     #[error(
-        "the journal of {clearance} is {depth:.3e} m beyond its bearing's wall at t = {time:e} s, \
-         and no contact has begun: the engine has missed one; a smaller relative_tolerance or \
+        "what touches in {clearance} is {depth:.3e} m beyond its wall at t = {time:e} s, and no contact has begun: the engine has missed one; a smaller relative_tolerance or \
          max_step may help"
     )]
     InTheWall {
@@ -40,8 +39,7 @@ pub enum Contradiction {
     },
     /// A contact without touch.
     #[error(
-        "the journal of {clearance} is {gap:.3e} m off its bearing's wall at t = {time:e} s, and \
-         its contact has not ended: the engine has missed that; a smaller relative_tolerance or \
+        "what touches in {clearance} is {gap:.3e} m off its wall at t = {time:e} s, and its contact has not ended: the engine has missed that; a smaller relative_tolerance or \
          max_step may help"
     )]
     OffTheWall {
@@ -54,7 +52,7 @@ pub enum Contradiction {
     },
     /// A contact that begins on the way out.
     #[error(
-        "a contact of {clearance} begins at t = {time:e} s while journal and wall part at \
+        "a contact of {clearance} begins at t = {time:e} s while the surfaces part at \
          {rate:.3e} m/s: its begin was missed; a smaller relative_tolerance or max_step may help"
     )]
     BeginsParting {

@@ -29,7 +29,7 @@ const MOST_RPM: f64 = 30_000.0;
 /// Writes a mechanism of one kind.
 type Write = fn(&mut Draft);
 
-const KINDS: [(&str, Write); 12] = [
+const KINDS: [(&str, Write); 15] = [
     ("four-bar", four_bar),
     ("six-bar", six_bar),
     ("chain", chain),
@@ -42,6 +42,9 @@ const KINDS: [(&str, Write); 12] = [
     ("ring and disc", ring_and_disc),
     ("loose motor", loose_motor),
     ("rotor in two bearings", rotor_in_two_bearings),
+    ("block in guide", block_in_guide),
+    ("slider-crank", slider_crank),
+    ("swinging guide", swinging_guide),
 ];
 
 /// Mechanism `number` of the campaign with a seed.
@@ -139,6 +142,48 @@ impl Draft {
         self.joint(name, first, second);
         let c = self.log(1e-6, 5e-3);
         let radius = self.between(5e-3, 15e-3).max(1.5 * c);
+        self.contacts(name, &format!("bearing_radius = {radius:.6e}\nradial = {c:.6e}"), 1);
+        c
+    }
+
+    /// A block of this length and height (m) in a guide along `axis`, with play; returns that (m).
+    fn guide(
+        &mut self,
+        name: &str,
+        first: &str,
+        second: &str,
+        axis: [f64; 2],
+        size: [f64; 2],
+    ) -> f64 {
+        let gap = self.log(1e-6, 1e-3);
+        let [x, y] = axis;
+        let _ = write!(
+            self.joints,
+            "[joints.{name}]\nkind = \"prismatic\"\nbetween = [\"{first}\", \"{second}\"]\n\
+             axis = [{x:.6}, {y:.6}]\n\n"
+        );
+        let [length, height] = size;
+        let block = format!(
+            "gap = {gap:.6e}\nlength = {length:.6e}\nheight = {height:.6e}\ncorner_radius = 0.001"
+        );
+        self.contacts(name, &block, 4);
+        gap
+    }
+
+    /// A pin in a slot along `axis`, with play.
+    fn slot(&mut self, name: &str, first: &str, second: &str, axis: [f64; 2]) {
+        let (gap, radius) = (self.log(1e-6, 1e-3), self.log(2e-3, 1e-2));
+        let [x, y] = axis;
+        let _ = write!(
+            self.joints,
+            "[joints.{name}]\nkind = \"pin-slot\"\nbetween = [\"{first}\", \"{second}\"]\n\
+             axis = [{x:.6}, {y:.6}]\n\n"
+        );
+        self.contacts(name, &format!("gap = {gap:.6e}\npin_radius = {radius:.6e}"), 2);
+    }
+
+    /// What happens in the contacts of a joint with play.
+    fn contacts(&mut self, name: &str, play: &str, count: usize) {
         let stiffness = match self.chance(0.3) {
             true => "\"hertz-printed\", young = 207e9, poisson = 0.3".to_owned(),
             false => format!("{:.4e}", self.log(1e7, 1e12)),
@@ -156,7 +201,7 @@ impl Draft {
         };
         let _ = write!(
             self.joints,
-            "[joints.{name}.clearance]\nbearing_radius = {radius:.6e}\nradial = {c:.6e}\n\
+            "[joints.{name}.clearance]\n{play}\n\
              normal = {{ {law}, stiffness = {stiffness}{exponent} }}\n"
         );
         let friction = self.chance(0.5).then(|| self.friction());
@@ -170,8 +215,7 @@ impl Draft {
             self.joints.push_str("tension = \"cut\"\n");
         }
         self.joints.push('\n');
-        self.frictions.push(friction);
-        c
+        self.frictions.extend(std::iter::repeat_n(friction, count));
     }
 
     fn friction(&mut self) -> Friction {
@@ -566,4 +610,102 @@ fn rotor_in_two_bearings(draft: &mut Draft) {
             velocity[0], velocity[1]
         ),
     );
+}
+
+/// A block in a guide of the ground, somewhere in its play, sliding, drifting and tumbling.
+fn block_in_guide(draft: &mut Draft) {
+    let origin = draft.between(-0.5, 0.5);
+    draft.ground("O", [origin, 0.0]);
+    let (length, height) = (draft.log(0.01, 0.2), draft.log(0.01, 0.2));
+    let mass = draft.log(0.05, 1.0);
+    let inertia = mass * (length * length + height * height) / 12.0 * draft.between(0.5, 2.0);
+    let beside = [draft.between(-0.3, 0.3) * length, draft.between(-0.3, 0.3) * height];
+    draft.body("block", mass, inertia, &[("C", beside)]);
+    let turned = draft.angle();
+    let (sin, cos) = turned.sin_cos();
+    let axis = [cos, sin];
+    // the block is turned as its guide is
+    let gap = draft.guide("slide", "ground.O", "block.C", axis, [length, height]);
+    let along = draft.sign() * draft.log(1e-3, 1.0);
+    let across = draft.between(-0.5, 0.5) * gap;
+    let tilt = draft.between(-0.5, 0.5) * gap / (0.5 * length + 0.5 * height);
+    // some impacts to some hundreds of them
+    let pace = gap * draft.log(10.0, 1e3);
+    let velocity = [along * cos - pace * sin, along * sin + pace * cos];
+    let rate = draft.sign() * gap / length * draft.log(10.0, 1e3);
+    // its point is where the play has it
+    let (tilt_sin, tilt_cos) = tilt.sin_cos();
+    let from_point = [
+        -(beside[0] * tilt_cos - beside[1] * tilt_sin),
+        -(beside[0] * tilt_sin + beside[1] * tilt_cos),
+    ];
+    let place = [origin - across * sin + from_point[0], across * cos + from_point[1]];
+    draft.fixed("block", [place[0], place[1], tilt], [velocity[0], velocity[1], rate]);
+    draft.fastest = 0.0;
+}
+
+/// A slider-crank whose slider has play in its guide, on or beside the crank's axis.
+fn slider_crank(draft: &mut Draft) {
+    let crank = draft.log(0.01, 0.1);
+    let rod = crank * draft.between(2.0, 4.0);
+    let beside = draft.between(-0.5, 0.5) * crank;
+    draft.ground("O", [0.0, 0.0]);
+    draft.ground("G", [0.0, beside]);
+    draft.rod("crank", crank, "O", "A");
+    draft.rod("rod", rod, "A", "B");
+    let (length, height) = (draft.log(0.01, 0.1), draft.log(0.01, 0.1));
+    let mass = draft.log(0.05, 1.0);
+    let inertia = mass * (length * length + height * height) / 12.0;
+    draft.body("slider", mass, inertia, &[("B", [0.0, 0.0]), ("C", [0.0, 0.0])]);
+    draft.joint("O", "ground.O", "crank.O");
+    draft.joint("A", "crank.A", "rod.A");
+    match draft.chance(0.3) {
+        true => {
+            draft.loose("B", "rod.B", "slider.B");
+        }
+        false => draft.joint("B", "rod.B", "slider.B"),
+    }
+    draft.guide("guide", "ground.G", "slider.C", [1.0, 0.0], [length, height]);
+    let angle = draft.angle();
+    draft.drive("crank", "O", angle, 10_000.0);
+    let (sin, cos) = angle.sin_cos();
+    let reach = (rod * rod - (beside - crank * sin).powi(2)).sqrt();
+    let [x, lean] = [crank * cos + reach, ((beside - crank * sin) / rod).asin()];
+    draft.start("rod", &format!("angle = {lean:.4}"));
+    draft.start("slider", &format!("x = {x:.4e}, y = {beside:.4e}"));
+}
+
+/// A rod on a crank, with play in a guide, or with a pin in a slot, that swings.
+fn swinging_guide(draft: &mut Draft) {
+    let crank = draft.log(0.01, 0.1);
+    let far = crank * draft.between(2.0, 4.0);
+    draft.ground("O", [0.0, 0.0]);
+    draft.ground("P", [far, 0.0]);
+    draft.rod("crank", crank, "O", "A");
+    let length = far * draft.between(1.0, 1.3);
+    draft.rod("rod", length, "A", "C");
+    let inertia = draft.log(1e-5, 1e-3);
+    let mass = draft.log(0.05, 1.0);
+    let off = draft.between(0.0, 0.02);
+    draft.body("lever", mass, inertia, &[("P", [off, 0.0]), ("C", [0.0, 0.0])]);
+    draft.joint("O", "ground.O", "crank.O");
+    draft.joint("P", "ground.P", "lever.P");
+    match draft.chance(0.6) {
+        true => {
+            draft.joint("A", "crank.A", "rod.A");
+            let size = [draft.log(0.01, 0.05), draft.log(0.01, 0.05)];
+            draft.guide("slide", "lever.C", "rod.C", [1.0, 0.0], size);
+        }
+        // the crank's own pin in the lever's slot; the rod swings on it
+        false => {
+            draft.slot("slide", "lever.C", "crank.A", [1.0, 0.0]);
+            draft.joint("A", "crank.A", "rod.A");
+        }
+    }
+    let angle = draft.angle();
+    draft.drive("crank", "O", angle, 5_000.0);
+    let (sin, cos) = angle.sin_cos();
+    let lean = (-crank * sin).atan2(far - crank * cos);
+    draft.start("rod", &format!("angle = {lean:.4}"));
+    draft.start("lever", &format!("angle = {lean:.4}"));
 }

@@ -8,7 +8,7 @@ fn a_set_key_is_read_and_stands_in_the_text_as_run() {
         ["joints.A.clearance.radial=0.00015", "solver.engine=explicit", "solver.precision=71"];
     let case = Case::from_text(Path::new("a.toml"), FOUR_BAR_A, &changes(&set, false)).unwrap();
     let clearance = &case.description.joints[1].clearance;
-    assert_eq!(clearance.as_ref().unwrap().radial.to_string(), "0.00015");
+    assert_eq!(clearance.as_ref().unwrap().play().1.to_string(), "0.00015");
     assert_eq!(case.plan.solver.engine, EngineName::Explicit);
     assert_eq!(case.plan.solver.precision, Precision::Octuple);
     let radial = format!("radial         = 0.00015{}# m, radial clearance c\n", " ".repeat(34));

@@ -34,13 +34,18 @@ pub const POWER: &Kind = &power::KIND;
 /// What a law is made of beside its values.
 #[derive(Debug, Clone, Copy)]
 pub struct Ends<S> {
-    /// Radius of the bearing R_b (m).
+    /// Radius of the bearing R_b (m); infinite where it is a plane.
     pub bearing: S,
     /// Radius of the journal R_j (m).
     pub journal: S,
 }
 
 impl<S: Scalar> Ends<S> {
+    /// A corner or a pin of this radius (m) on a plane.
+    pub fn on_a_plane(radius: S) -> Self {
+        Ends { bearing: S::from_f64(f64::INFINITY), journal: radius }
+    }
+
     /// Radial clearance c = R_b − R_j (m).
     fn radial(&self) -> S {
         self.bearing - self.journal

@@ -25,7 +25,7 @@ pub const KIND: Kind = Kind {
     example: r#"[joints.A.clearance]
 normal = { law = "lankarani-nikravesh", restitution = 0.9, elastic = "power", stiffness = "hertz-printed", young = 207e9, poisson = 0.3 }"#,
     keys: &[
-        Key::new("stiffness", Takes::NumberOr(Range::Positive, &["hertz-printed", "hertz-internal"]), "N/mⁿ", "K: by the paper's equation 5, of a journal inside its bearing, or a number"),
+        Key::new("stiffness", Takes::NumberOr(Range::Positive, &["hertz-printed", "hertz-internal"]), "N/mⁿ", "K: by the paper's equation 5, of a journal inside its bearing, or a number; of a corner or a pin on a plane both words are the same"),
         Key { otherwise: Otherwise::Absent, ..YOUNG },
         Key { otherwise: Otherwise::Absent, ..POISSON },
         Key::new("exponent", Takes::Number(Range::AtLeastOne), "", "exponent n of the depth").or("1.5"),

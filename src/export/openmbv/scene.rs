@@ -1,7 +1,7 @@
 //! The scene: what the bodies look like, as OpenMBV's XML.
 
 use super::super::Error;
-use crate::model::{Description, NamedPoint};
+use crate::model::{Description, NamedPoint, Play};
 use crate::record::ResultFile;
 use std::f64::consts::TAU;
 use std::fmt::Write;
@@ -234,18 +234,24 @@ fn eyes(
         let here = format!("{body}.{}", point.name);
         let clearance = description.joints.iter().find_map(|joint| {
             let side = joint.between().iter().position(|end| *end == here)?;
-            Some((side, joint.clearance.as_ref()?))
+            Some((side, &joint.clearance.as_ref()?.play))
         });
         let (name, radii) = match clearance {
             None => (format!("eye_{}", point.name), vec![1.4 * half_width]),
-            Some((0, clearance)) => {
-                let inner = clearance.bearing_radius.to_f64();
-                (format!("bearing_{}", point.name), vec![inner + half_width, inner])
-            }
-            Some((_, clearance)) => {
-                let radius = clearance.bearing_radius.to_f64() - clearance.radial.to_f64();
-                (format!("journal_{}", point.name), vec![radius])
-            }
+            Some((side, play)) => match (play, side) {
+                (Play::Bearing { bearing_radius, .. }, 0) => {
+                    let inner = bearing_radius.to_f64();
+                    (format!("bearing_{}", point.name), vec![inner + half_width, inner])
+                }
+                (Play::Bearing { bearing_radius, radial }, _) => {
+                    let radius = bearing_radius.to_f64() - radial.to_f64();
+                    (format!("journal_{}", point.name), vec![radius])
+                }
+                (Play::Slot { pin_radius, .. }, 1) => {
+                    (format!("pin_{}", point.name), vec![pin_radius.to_f64()])
+                }
+                _ => (format!("eye_{}", point.name), vec![1.4 * half_width]),
+            },
         };
         Shape { name, outlines: radii.into_iter().map(|radius| circle(centre, radius)).collect() }
     };

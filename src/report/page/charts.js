@@ -365,7 +365,7 @@ class Card {
     const least = FLATTEST * Math.max(Math.abs(low), Math.abs(high)) || this.size || 1;
     if (high - low < least) [low, high] = [(low + high - least) / 2, (low + high + least) / 2];
     const rim = 0.06 * (high - low);
-    if (floor !== undefined && low - floor < 0.5 * (high - floor)) return [floor, high + rim];
+    if (floor !== undefined && low >= floor && low - floor < 0.5 * (high - floor)) return [floor, high + rim];
     return [low - rim, high + rim];
   }
 

@@ -92,9 +92,10 @@ export function drawMechanism(pen, run, view, look) {
     const colour = seriesColour(look.colourOf(run.joints[index]));
     if (joint.kind === "distance") drawLink(pen, ...joint.between.map((end) => at(places.place(end))), colour);
     if (joint.pinion) drawPinion(pen, run, joint, centre, joint.pinion * view.scale, colour, look.symbol);
+    else if (joint.walls) drawWalls(pen, run, joint, at(places.place(joint.between[0])), centre, colour, view.scale);
     else if (joint.axis) drawSlide(pen, run, joint, at(places.place(joint.between[0])), centre, colour, look.symbol);
     if (joint.clearance) drawBearing(pen, run, joint, index, centre, at(places.place(joint.between[1])), view, look);
-    else drawPin(pen, centre, colour);
+    else if (!joint.walls?.pin) drawPin(pen, centre, colour);
     if (joint.driven) drawDrive(pen, centre, view, joint, look);
   });
   const cuts = [];
@@ -179,6 +180,46 @@ function drawSlide(pen, run, joint, from, centre, colour, s) {
   pen.lineWidth = 1.6;
   pen.strokeRect(-17 * s, -10 * s, 34 * s, 20 * s);
   pen.restore();
+}
+
+/** Both walls of a guide or a slot with play, true to scale, and the block or the pin between them. */
+function drawWalls(pen, run, joint, from, centre, colour, scale) {
+  const { gap, block, angle, pin } = joint.walls;
+  const half = scale * (block ? block[1] / 2 : pin);
+  const wall = half + scale * gap;
+  const along = axisAngle(run, joint);
+  const travel = (centre[0] - from[0]) * Math.cos(along) + (centre[1] - from[1]) * Math.sin(along);
+  const reach = Math.max(34, (block ? 0.8 * block[0] : 2 * pin) * scale);
+  const [begin, end] = [Math.min(0, travel) - reach, Math.max(0, travel) + reach];
+  pen.save();
+  pen.translate(...from);
+  pen.rotate(along);
+  pen.strokeStyle = theme().muted;
+  pen.lineWidth = 1.2;
+  pen.beginPath();
+  for (const side of [-1, 1]) {
+    pen.moveTo(begin, side * wall);
+    pen.lineTo(end, side * wall);
+    for (let x = begin; x <= end - 5; x += 7) {
+      pen.moveTo(x, side * wall);
+      pen.lineTo(x + 5, side * (wall + 6));
+    }
+  }
+  pen.stroke();
+  pen.restore();
+  pen.strokeStyle = colour;
+  pen.lineWidth = 1.6;
+  if (block) {
+    pen.save();
+    pen.translate(...centre);
+    const [x, y] = joint.axis;
+    pen.rotate(-(Math.atan2(y, x) + turned(run, joint.between[1].body) - angle));
+    pen.strokeRect((-scale * block[0]) / 2, -half, scale * block[0], 2 * half);
+    pen.restore();
+  } else {
+    circle(pen, ...centre, half);
+    pen.stroke();
+  }
 }
 
 /** A spring: a zigzag between two points. */

@@ -40,15 +40,15 @@ export const QUANTITIES = [
   {
     id: "eccentricity",
     state: true,
-    title: "Eccentricity of journal in bearing",
+    title: "Eccentricity of journal in bearing, or of corner in guide",
     unit: "m",
     joints: true,
     open: true,
     floor: 0,
     items: (run) => run.clearances,
     values: eccentricity,
-    mark: (run, item) => run.radial(run.clearances.indexOf(item)),
-    note: "The line is the radial clearance c.",
+    mark: (run, item) => run.play(run.clearances.indexOf(item)),
+    note: "The line is the radial clearance c, or the play.",
   },
   {
     id: "depth",
@@ -133,8 +133,8 @@ export const QUANTITIES = [
 
 function eccentricity(run, item) {
   const depth = run.column("penetration", item);
-  const radial = run.radial(run.clearances.indexOf(item));
-  if (depth && radial !== null) return depth.map((value) => value + radial);
+  const play = run.play(run.clearances.indexOf(item));
+  if (depth && play !== null) return depth.map((value) => value + play);
   const [x, y] = [run.column("clearance_x", item), run.column("clearance_y", item)];
   return x && y ? x.map((value, row) => Math.hypot(value, y[row])) : null;
 }

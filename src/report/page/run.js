@@ -56,10 +56,27 @@ class Run {
     return this.contactsBy[clearance];
   }
 
-  /** Radial clearance c (m) of a clearance, where the case tells it. */
+  /** Radial clearance c (m) of a journal, where the case tells it. */
   radial(clearance) {
     const joint = this.drawing?.joints[this.joints.indexOf(this.clearances[clearance])];
     return joint?.clearance?.radial ?? null;
+  }
+
+  /** The same of any clearance, before a straight wall the play there (m). */
+  play(clearance) {
+    return this.radial(clearance) ?? this.drawing?.joints[this.jointOf(clearance)]?.walls?.gap ?? null;
+  }
+
+  /** The joint that a clearance is in, by index: corners and flanks have its name and a number. */
+  jointOf(clearance) {
+    const name = this.clearances[clearance];
+    const joint = this.joints.indexOf(name);
+    return joint < 0 ? this.joints.indexOf(name.replace(/_\d$/, "")) : joint;
+  }
+
+  /** The clearances of a joint, by index. */
+  clearancesOf(joint) {
+    return this.clearances.map((_, clearance) => clearance).filter((clearance) => this.jointOf(clearance) === joint);
   }
 
   /**
@@ -175,7 +192,7 @@ class Run {
 
   /** Journal centre minus bearing centre (m) at the time sought. */
   offsetAt(name) {
-    return [this.at(this.column("clearance_x", name)), this.at(this.column("clearance_y", name))];
+    return [this.at(this.column("clearance_x", name)) || 0, this.at(this.column("clearance_y", name)) || 0];
   }
 
   /** Magnitude of a joint's force (N) over the rows; nothing where the file has none. */

@@ -63,7 +63,7 @@ export class Stage {
     for (const run of this.shown) {
       for (const contact of run.contacts) {
         if (contact.peakTime <= before || contact.peakTime > time) continue;
-        const joint = run.joints.indexOf(run.clearances[contact.clearance]);
+        const joint = run.jointOf(contact.clearance);
         run.seek(contact.peakTime);
         const offset = run.offsetAt(run.joints[joint]);
         this.held.push({ run, joint, since: now, offset, force: run.forceAt(joint) });

@@ -144,24 +144,32 @@ export class Transport {
     run.seek(time);
     const several = this.counted().length > 1;
     const clearances = run.clearances.length > 0 || !several ? run.joints : [];
-    return clearances.filter((name) => !several || run.clearances.includes(name)).map((name) => {
+    const loose = (name) => run.clearancesOf(run.joints.indexOf(name)).length > 0;
+    return clearances.filter((name) => !several || loose(name)).map((name) => {
       const clearance = run.clearances.indexOf(name);
-      const [fx, fy] = run.forceAt(run.joints.indexOf(name));
+      const joint = run.joints.indexOf(name);
+      const [fx, fy] = run.forceAt(joint);
       const force = Math.hypot(fx, fy);
       const row = document.createElement("tr");
       const head = document.createElement("th");
       head.scope = "row";
       head.textContent = several ? `${run.label}, ${name}` : name;
       head.style.setProperty("--colour", seriesColour(this.colourOf(name)));
-      const told = [this.modeOf(run, clearance, time), this.offsetOf(run, name, clearance), inUnit(force, prefixed("N", force), 4)];
+      const told = [this.modeOf(run, joint, time), this.offsetOf(run, name, clearance), inUnit(force, prefixed("N", force), 4)];
       const cells = told.map((text) => Object.assign(document.createElement("td"), { textContent: text }));
       row.append(head, ...cells);
       return row;
     });
   }
 
-  modeOf(run, clearance, time) {
-    if (clearance < 0) return "ideal";
+  modeOf(run, joint, time) {
+    const [clearance, ...others] = run.clearancesOf(joint);
+    if (clearance === undefined) return "ideal";
+    if (others.length > 0) {
+      const touching = [clearance, ...others].filter((one) => run.contactAt(one, time));
+      const names = touching.map((one) => run.clearances[one]);
+      return names.length > 0 ? `contact ${names.join(", ")}` : "flight";
+    }
     const contact = run.contactAt(clearance, time);
     if (!contact) return "flight";
     return `contact ${run.contactsOf(clearance).indexOf(contact) + 1} of ${run.contactsOf(clearance).length}`;
