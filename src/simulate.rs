@@ -563,6 +563,14 @@ fn attributes(case: &Case, mechanism: &Mechanism<f64>) -> Vec<(String, Attribute
         ("norm".to_owned(), Attribute::from(norm.map_or("", |(name, _)| *name))),
     ];
     let model = mechanism.model();
+    if mechanism.redundant() > 0 {
+        let held = mechanism.redundantly_held();
+        let held: Vec<String> = held.iter().map(|owner| owner.name(model.names())).collect();
+        let count = Attribute::from(mechanism.redundant() as i64);
+        attributes.push(("redundant_constraints".to_owned(), count));
+        let ruling = format!("{} hold each other: forces of least norm", held.join(", "));
+        attributes.push(("ruling_redundant_forces".to_owned(), Attribute::from(ruling)));
+    }
     for (name, clearance) in model.names().clearances.iter().zip(model.clearances()) {
         let tension = if clearance.cut_tension { "cut" } else { "keep" };
         attributes.push((format!("ruling_tension_{name}"), Attribute::from(tension)));

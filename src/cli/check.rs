@@ -206,6 +206,8 @@ impl Checked<'_> {
             "freedoms": mechanism.freedoms(),
             "coordinates": mechanism.coordinates(),
             "constraints": mechanism.multipliers(),
+            "redundant": mechanism.redundant(),
+            "redundantly_held": redundant_names(mechanism),
             "start": Map::from_iter(start),
             "clearances": Map::from_iter(clearances),
             "turn": turn_json(&self.turn),
@@ -409,7 +411,17 @@ fn mechanism_lines(
         } else {
             ""
         }
-    )
+    )?;
+    let held = redundant_names(mechanism);
+    match mechanism.redundant() {
+        0 => Ok(()),
+        count => writeln!(
+            f,
+            "  redundant    {count} of the constraints: {} hold each other, their forces are those of \
+             least norm",
+            held.join(", ")
+        ),
+    }
 }
 
 /// The kind of each part, by its name.
@@ -426,6 +438,12 @@ fn nominal_restitution(
 ) -> Option<f64> {
     let name = &mechanism.model().names().clearances[k];
     description.clearance(name)?.normal.nominal_restitution()
+}
+
+/// The joints and drives that hold each other, by name.
+fn redundant_names(mechanism: &Mechanism<f64>) -> Vec<String> {
+    let names = mechanism.model().names();
+    mechanism.redundantly_held().iter().map(|owner| owner.name(names)).collect()
 }
 
 /// The word of the elastic law of a clearance.

@@ -6,11 +6,13 @@
 mod cascade;
 mod dense;
 mod nearest;
+mod null;
 mod symmetric;
 
 pub use cascade::{Cascade, Row};
 pub use dense::{determinant_sign, solve_square};
 pub use nearest::nearest;
+pub use null::{null_space, pivots};
 pub use symmetric::Symmetric;
 
 /// No solution: the pivot of this row is nothing but rounding.

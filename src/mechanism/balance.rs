@@ -148,11 +148,14 @@ impl<S: Scalar> Mechanism<S> {
     /// Forms and factors Φ_q M⁻¹ Φ_qᵀ at the poses as placed.
     pub(super) fn factor(&mut self) -> Result<(), Singular> {
         self.couple();
+        if self.redundant > 0 {
+            self.support()?;
+        }
         self.now.matrix.factor()
     }
 
     /// Forms Φ_q M⁻¹ Φ_qᵀ at the poses as placed.
-    fn couple(&mut self) {
+    pub(super) fn couple(&mut self) {
         self.find_arms();
         // revolute joints need no more than arms
         if !(self.layout.couplings.is_empty() && self.rubbings.is_empty()) {
@@ -186,6 +189,11 @@ impl<S: Scalar> Mechanism<S> {
     pub fn weakest_joint(&mut self, state: State<'_, S>) -> Option<(Owner, f64)> {
         self.place(&state);
         self.couple();
+        if self.redundant > 0
+            && let Err(Singular { row }) = self.support()
+        {
+            return Some((self.layout.owner(row), 0.0));
+        }
         let whole: Vec<f64> = self.now.matrix.diagonal().collect();
         let (row, left) = match self.now.matrix.factor() {
             Err(Singular { row }) => (row, 0.0),

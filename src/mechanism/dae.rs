@@ -3,9 +3,10 @@
 //! r_q = q̇ − v
 //! r_v = v̇ − M⁻¹ (Q(q, v, z, t) − Φ_qᵀ λ)
 //! r_z = ż − f(q, v, z, t)
-//! r_λ = Φ̈(q, v, v̇, t)
+//! r_λ = Φ̈(q, v, v̇, t) − s W Wᵀ λ
 //! ```
-//! y = (q, v, z, λ); the Jacobian is ∂r/∂y + c_j ∂r/∂ẏ. It is tested against dual numbers, column by
+//! W are the directions in which multipliers do nothing, where constraints follow from others
+//! (`redundant.rs`). y = (q, v, z, λ); the Jacobian is ∂r/∂y + c_j ∂r/∂ẏ. It is tested against dual numbers, column by
 //! column.
 
 use super::layout::{FreeBody, Role};
@@ -47,6 +48,8 @@ impl<S: Scalar> Mechanism<S> {
             let poses = &now.poses;
             row.constraint.acceleration_error(t, arms, poses, motions, accelerations, error);
         }
+        // what makes multipliers that do nothing definite, as last factored
+        now.idle.subtract(&now.lambda, &mut r[first..]);
     }
 
     /// Places the bodies at (q, v) of `y`, with z and λ of `y` and the accelerations of `yp`.
@@ -231,6 +234,10 @@ impl Mechanism<f64> {
                 j.add(equation, by, q);
                 j.add(equation, n + by, v);
             });
+        }
+        let first = 2 * n + now.z.len();
+        for (row, column, entry) in now.idle.entries() {
+            j.add(first + row, first + column, -entry);
         }
     }
 }

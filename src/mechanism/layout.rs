@@ -6,7 +6,7 @@
 
 use crate::joint::{AngleDrive, Constraint, Derived, Pair, Relation, Travel};
 use crate::linear::Symmetric;
-use crate::model::{Complaint, GROUND, KeyPath, Model, Owner};
+use crate::model::{Complaint, GROUND, Model, Owner};
 use crate::scalar::Scalar;
 
 /// What a body is to the equations.
@@ -149,46 +149,50 @@ impl<S: Scalar> Layout<S> {
             rows += own;
             constraints.push(Row { constraint, first, rows: own, owner });
         }
-        if complaints.is_empty() && rows > coordinates {
-            complaints.push(Complaint {
-                key: KeyPath::new(["joints"]),
-                message: format!(
-                    "hold the mechanism {} times too often: {coordinates} coordinates, {rows} \
-                     constraints; remove a joint or a drive, or give a joint clearance",
-                    rows - coordinates
-                ),
-            });
+        if !complaints.is_empty() {
+            return Err(complaints);
         }
-        match complaints.is_empty() {
-            true => {
-                let shared = shared(&constraints, &roles);
-                let matrix = Symmetric::new(rows, shared.iter().flat_map(Shared::entries));
-                let hinges = shared.iter().filter_map(|shared| shared.hinge(model, &matrix));
-                let couplings = shared.iter().filter(|shared| !shared.are_revolute());
-                let couplings = couplings.flat_map(|shared| shared.couplings(&matrix));
-                let free = roles.iter().enumerate().filter_map(|(body, role)| match role {
-                    Role::Free(at) => Some(FreeBody {
-                        body,
-                        at: *at,
-                        mass: S::one() / model.masses()[body],
-                        inertia: S::one() / model.inertias()[body],
-                    }),
-                    _ => None,
-                });
-                Ok(Layout {
-                    free: free.collect(),
-                    hinges: hinges.collect(),
-                    couplings: couplings.collect(),
-                    roles,
-                    driven,
-                    constraints,
-                    matrix,
-                    coordinates,
-                    rows,
-                })
-            }
-            false => Err(complaints),
-        }
+        let free = roles.iter().enumerate().filter_map(|(body, role)| match role {
+            Role::Free(at) => Some(FreeBody {
+                body,
+                at: *at,
+                mass: S::one() / model.masses()[body],
+                inertia: S::one() / model.inertias()[body],
+            }),
+            _ => None,
+        });
+        let mut layout = Layout {
+            free: free.collect(),
+            hinges: Vec::new(),
+            couplings: Vec::new(),
+            roles,
+            driven,
+            constraints,
+            matrix: Symmetric::new(0, []),
+            coordinates,
+            rows,
+        };
+        layout.couple(model, false);
+        Ok(layout)
+    }
+
+    /// Lets the mass–constraint matrix have all entries.
+    pub fn fill(&mut self, model: &Model<S>) {
+        self.couple(model, true);
+    }
+
+    /// Finds the pattern of the mass–constraint matrix, or fills it, and what adds to which entry.
+    fn couple(&mut self, model: &Model<S>, full: bool) {
+        let shared = shared(&self.constraints, &self.roles);
+        let rows = self.rows;
+        let matrix = match full {
+            true => Symmetric::new(rows, (0..rows * rows).map(|k| (k / rows, k % rows))),
+            false => Symmetric::new(rows, shared.iter().flat_map(Shared::entries)),
+        };
+        let hinges = shared.iter().filter_map(|shared| shared.hinge(model, &matrix)).collect();
+        let couplings = shared.iter().filter(|shared| !shared.are_revolute());
+        let couplings = couplings.flat_map(|shared| shared.couplings(&matrix)).collect();
+        (self.hinges, self.couplings, self.matrix) = (hinges, couplings, matrix);
     }
 
     /// The joint or drive that a constraint row belongs to.

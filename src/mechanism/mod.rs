@@ -11,6 +11,7 @@ mod observation;
 mod observe;
 mod place;
 mod project;
+mod redundant;
 mod rub;
 mod start;
 mod system;
@@ -33,6 +34,7 @@ use crate::plane::{Motion, Pose, Vector, Wrench};
 use crate::scalar::Scalar;
 use layout::{Layout, Role};
 use measure::ForceSource;
+use redundant::Idle;
 use rub::{Rubbed, Rubbing};
 use std::ops::Range;
 
@@ -76,6 +78,10 @@ pub struct Mechanism<S> {
     mobilities: Vec<Option<[f64; 2]>>,
     /// Square of the fastest pace (rad²/s²) that loads and courses give.
     given_pace: f64,
+    /// How many constraint rows follow from the others.
+    redundant: usize,
+    /// What makes a force of each row's multiplier (1/m of angles); found where rows follow from others.
+    row_lengths: Vec<f64>,
     now: Evaluation<S>,
 }
 
@@ -115,6 +121,8 @@ struct Evaluation<S> {
     jacobian: Vec<Blocks<S>>,
     /// Φ_q M⁻¹ Φ_qᵀ, later its factors.
     matrix: Symmetric<S>,
+    /// Directions in which multipliers do nothing, as last factored.
+    idle: Idle<S>,
     /// Friction in ideal joints, once evaluated.
     rubbed: Vec<Rubbed<S>>,
     /// Force and torque of each driven body's joint and drive on that body.
@@ -142,6 +150,7 @@ impl<S: Scalar> Evaluation<S> {
             arms: vec![[Vector::zero(); 2]; layout.constraints.len()],
             jacobian: vec![[[S::zero(); 3]; MOST_BODIES]; layout.rows],
             matrix: layout.matrix.clone(),
+            idle: Idle::none(),
             rubbed: Vec::new(),
             driving: vec![(Vector::zero(), S::zero()); layout.driven.len()],
         }
@@ -211,6 +220,8 @@ impl<S: Scalar> Mechanism<S> {
             force_sources: measure::force_sources(&model, &layout),
             mobilities: measure::mobilities(&model, &layout),
             given_pace: measure::given_pace(&model, &layout),
+            redundant: 0,
+            row_lengths: Vec::new(),
             rubbings: rub::rubbings(&model, &layout),
             model,
             layout,
@@ -258,7 +269,7 @@ impl<S: Scalar> Mechanism<S> {
     /// Number of freedoms left by the ideal joints and drives (paper, eq. 16, less the driven
     /// bodies).
     pub fn freedoms(&self) -> usize {
-        self.layout.coordinates - self.layout.rows
+        (self.layout.coordinates + self.redundant).saturating_sub(self.layout.rows)
     }
 
     /// Whether a body moves as the drives prescribe; bodies count from 0, without the ground.

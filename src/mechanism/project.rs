@@ -150,12 +150,20 @@ impl<S: Scalar> Mechanism<S> {
         Err(Fault::Fatal(Box::new(OpenJoint { joint, off, time: self.now.time.to_f64() })))
     }
 
-    /// Sign of det Φ_q of a mechanism without freedom, as placed: on a branch of its motion it is
+    /// Sign of det Φ_q of a mechanism without freedom, as placed, filled up by the directions in which
+    /// multipliers do nothing: on a branch of its motion it is
     /// one and the same, and beside a dead centre the other branch has the other.
     pub fn branch(&mut self) -> i8 {
         self.reach();
-        let n = self.layout.coordinates;
+        if self.redundant > 0 && self.factor().is_err() {
+            return 0;
+        }
+        let n = self.layout.rows;
         let mut slopes = vec![S::zero(); n * n];
+        for row in 0..n {
+            let parts = self.now.idle.of_row(row);
+            parts.enumerate().for_each(|(k, part)| slopes[(row + 1) * n - 1 - k] = part);
+        }
         for row in &self.layout.constraints {
             for (r, sides) in self.now.jacobian[row.range()].iter().enumerate() {
                 for (body, side) in row.constraint.bodies().into_iter().zip(sides) {

@@ -108,6 +108,7 @@ impl<S: Scalar> Mechanism<S> {
         let mut q = self.named(|start| start.coordinates, [-origin.x, -origin.y, S::zero()]);
         let positions = self.assemble_positions(&mut q);
         self.check_positions(&q)?;
+        self.find_redundant(&q)?;
         let (v, velocities) = self.assemble_velocities(&q)?;
         self.check_accuracy(&q, &v, positions, velocities)?;
         self.begin(&q, &v)
