@@ -233,15 +233,15 @@ fn bad_cases() -> Vec<(String, Vec<String>)> {
             ),
             "does not close: ",
         ),
-        // a second joint that holds what another holds
+        // a second joint between bodies that cannot move otherwise anyway
         plain(
             &FOUR_BAR_A.replacen(
                 "[drives.crank]",
-                "[joints.again]\nkind = \"revolute\"\nbetween = [\"coupler.B\", \"follower.B\"]\n\
+                "[joints.again]\nkind = \"revolute\"\nbetween = [\"ground.A0\", \"crank.A0\"]\n\
                  [drives.crank]",
                 1,
             ),
-            "joints",
+            "joints.again",
         ),
         plain("", "bodies: there must be at least one body"),
         plain("just words", "is not TOML"),

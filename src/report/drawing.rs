@@ -2,7 +2,7 @@
 
 use crate::case::{Case, Changes};
 use crate::course::Course;
-use crate::model::{Description, JointDescription, NamedPoint, Play};
+use crate::model::{Description, JointDescription, LoadDescription, NamedPoint, Play};
 use crate::record::ResultFile;
 use serde::Serialize;
 use std::path::Path;
@@ -17,6 +17,7 @@ pub(super) struct Drawing {
     joints: Vec<DrawnJoint>,
     /// Springs, by the points between which they are.
     springs: Vec<[PointOnBody; 2]>,
+    loads: Vec<DrawnLoad>,
     /// Acceleration of free fall (m/s²), fixed frame.
     gravity: Option<[f64; 2]>,
 }
@@ -109,6 +110,7 @@ impl Drawing {
             bodies: description.bodies.iter().map(|body| points(&body.points)).collect(),
             joints: joints_of(description)?,
             springs: springs_of(description)?,
+            loads: description.loads.iter().filter_map(|load| load_of(description, load)).collect(),
             gravity: gravity.reduce(|[x, y], [also_x, also_y]| [x + also_x, y + also_y]),
         })
     }
@@ -163,6 +165,44 @@ fn joints_of(description: &Description) -> Option<Vec<DrawnJoint>> {
         })
     };
     description.joints.iter().map(joint).collect()
+}
+
+/// A load that acts at a point or on a body, in the direction in which it counts positive.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[serde(tag = "kind", rename_all = "kebab-case")]
+enum DrawnLoad {
+    /// A force; the direction is one in the frame of a body, none the ground.
+    Force { at: PointOnBody, direction: [f64; 2], frame: Option<usize> },
+    /// A torque, counter-clockwise, and the body that takes its reaction.
+    Torque { body: Option<usize>, on: Option<usize> },
+    /// A torsion spring between two bodies.
+    Coil { body: Option<usize>, on: Option<usize> },
+}
+
+fn load_of(description: &Description, load: &LoadDescription) -> Option<DrawnLoad> {
+    let part = &load.part;
+    let body = |name: &str| description.bodies.iter().position(|body| body.name == name);
+    Some(match part.kind().word {
+        "force" => {
+            let at = point_on_body(description, part.text("at"))?;
+            let given = if part.get("force").is_some() { "force" } else { "direction" };
+            let frame = if part.text("frame") == "body" { at.body } else { None };
+            DrawnLoad::Force { at, direction: part.vector(given), frame }
+        }
+        "gas-force" => {
+            let guide = description.joints.iter().find(|joint| joint.name == part.text("joint"))?;
+            let [first, second] = guide.between().map(|end| point_on_body(description, end));
+            let push = part.number::<f64>("area").signum();
+            let direction = guide.part.vector("axis").map(|x: f64| push * x);
+            DrawnLoad::Force { at: second?, direction, frame: first?.body }
+        }
+        "torque" => DrawnLoad::Torque { body: body(part.text("body")), on: body(part.text("on")) },
+        "torsion-spring" => {
+            let [on, own] = part.pair("between").map(body);
+            DrawnLoad::Coil { body: own, on }
+        }
+        _ => return None,
+    })
 }
 
 fn springs_of(description: &Description) -> Option<Vec<[PointOnBody; 2]>> {

@@ -89,7 +89,10 @@ impl<S: Scalar, Y: System<S>> Explicit<S, Y> {
             return Ok(Standing::Below);
         }
         if !at_zero && rate <= 0.0 {
-            return Ok(Standing::Passed);
+            // at the zero of a root time stands still, and all that is counted by it
+            let still = rate == 0.0 && self.flow.pace_at(&self.here.y) == S::zero();
+            let rises = still && self.here.courses[k].rate > 0.0;
+            return Ok(if rises { Standing::Due } else { Standing::Passed });
         }
         if rate < 0.0 && matches!(self.flow.gauges()[k], Gauge::Root { .. }) {
             return Ok(Standing::Leaving);
@@ -134,8 +137,13 @@ impl<S: Scalar, Y: System<S>> Explicit<S, Y> {
                 continue;
             }
             let value = self.here.approaches[k];
+            let rate = self.here.approach_rates[k].to_f64();
+            let noise = self.noise(rate).max(self.here.courses[k].noise);
+            // it has risen, but by no more than a step is looked through for
+            let hardly = value >= S::zero() && value.to_f64() <= noise && rate > 0.0;
             self.standing[k] = match self.standing[k] {
                 _ if self.is_as_good_as_there(k) => Standing::Due,
+                Standing::Below if hardly => Standing::Due,
                 _ if value < S::zero() => Standing::Below,
                 Standing::Leaving if value.to_f64() <= self.noise(0.0) => Standing::Leaving,
                 _ => Standing::Passed,

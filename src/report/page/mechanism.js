@@ -1,6 +1,6 @@
 // The mechanism at one moment: bodies, joints, bearings with enlarged clearance, forces.
 import { theme, seriesColour } from "./theme.js";
-import { arrowWithin, circle, fadingPath, label, labelBeside } from "./pen.js";
+import { arrow, arrowWithin, circle, fadingPath, label, labelBeside } from "./pen.js";
 import { inUnit, prefixed } from "./format.js";
 
 /** Smallest radii that journal and bearing are drawn with (px). */
@@ -23,6 +23,12 @@ export function extent(run) {
     for (const joint of run.drawing.joints.filter((joint) => joint.pinion)) {
       const [x, y] = place(seat(joint));
       for (const side of [-joint.pinion, joint.pinion]) take([x + side, y + side]);
+    }
+    for (const joint of run.drawing.joints.filter((joint) => joint.walls)) {
+      const [x, y] = place(seat(joint));
+      const { gap, block, pin } = joint.walls;
+      const half = gap + (block ? Math.max(...block) / 2 : pin);
+      for (const side of [-half, half]) take([x + side, y + side]);
     }
   }
   run.drawing.ground.forEach((point) => take(point.at));
@@ -87,6 +93,7 @@ export function drawMechanism(pen, run, view, look) {
   for (let body = 0; body < run.bodies.length; body++) drawBody(pen, outline(places, body).map(at), look);
   for (const centre of places.centres) drawCentre(pen, at(centre));
   for (const ends of run.drawing.springs) drawSpring(pen, ...ends.map((end) => at(places.place(end))), look.symbol);
+  for (const load of run.drawing.loads) drawLoad(pen, run, load, places, at, look.symbol);
   run.drawing.joints.forEach((joint, index) => {
     const centre = at(places.place(seat(joint)));
     const colour = seriesColour(look.colourOf(run.joints[index]));
@@ -242,6 +249,34 @@ function drawSpring(pen, from, to, s) {
   pen.stroke();
 }
 
+/**
+ * A load, of one size whatever its own: an arrow that pushes at its point, a turning one about the centre
+ * of its body, a coil. It points where the load counts positive.
+ */
+function drawLoad(pen, run, load, places, at, s) {
+  const colour = theme().muted;
+  if (load.kind === "force") {
+    const [x, y] = at(places.place(load.at));
+    const angle = -(Math.atan2(load.direction[1], load.direction[0]) + turned(run, load.frame));
+    const [dx, dy] = [30 * s * Math.cos(angle), 30 * s * Math.sin(angle)];
+    arrow(pen, x - 1.25 * dx, y - 1.25 * dy, dx, dy, colour, 1.8);
+    return;
+  }
+  const [x, y] = at(places.centres[load.body ?? load.on]);
+  if (load.kind === "torque") {
+    turnAbout(pen, x, y, 14 * s, false, colour);
+    return;
+  }
+  pen.strokeStyle = colour;
+  pen.lineWidth = 1.4;
+  pen.beginPath();
+  for (let turn = 0; turn <= 2.5; turn += 0.05) {
+    const radius = (3 + 4 * turn) * s;
+    pen.lineTo(x + radius * Math.cos(2 * Math.PI * turn), y - radius * Math.sin(2 * Math.PI * turn));
+  }
+  pen.stroke();
+}
+
 /** The mechanism of another run as thin dashed lines. */
 export function drawGhost(pen, run, view) {
   const places = placesOf(run, 1);
@@ -377,18 +412,22 @@ export function tailOf(run, name, time, duration) {
 
 function drawDrive(pen, [x, y], view, joint, look) {
   const hole = joint.clearance ? circles(joint.clearance, look.factor, view.scale).bearing + look.wall : 5;
-  const radius = hole + 9;
-  pen.strokeStyle = theme().muted;
+  // a drive turns its second body
+  turnAbout(pen, x, y, hole + 9, look.backwards, theme().muted);
+}
+
+/** An arrow round a centre; backwards, it stands at the other end. */
+function turnAbout(pen, x, y, radius, backwards, colour) {
+  pen.strokeStyle = colour;
   pen.lineWidth = 1.6;
   pen.beginPath();
   pen.arc(x, y, radius, -0.3, -1.9, true);
   pen.stroke();
-  // A drive turns its second body; backwards, the arrow stands at the other end.
-  const angle = look.backwards ? -0.3 : -1.9;
-  const turn = look.backwards ? 1 : -1;
+  const angle = backwards ? -0.3 : -1.9;
+  const turn = backwards ? 1 : -1;
   const [tipX, tipY] = [x + radius * Math.cos(angle), y + radius * Math.sin(angle)];
   const [alongX, alongY] = [-turn * Math.sin(angle), turn * Math.cos(angle)];
-  pen.fillStyle = theme().muted;
+  pen.fillStyle = colour;
   pen.beginPath();
   pen.moveTo(tipX + 6 * alongX, tipY + 6 * alongY);
   pen.lineTo(tipX + 4 * Math.cos(angle), tipY + 4 * Math.sin(angle));
