@@ -328,6 +328,19 @@ fn what_is_pressed_against_its_guide_stays_there() {
 }
 
 #[test]
+fn corners_that_strike_together_are_both_met() {
+    for engine in ENGINES {
+        for tolerance in ["1e-6", "1e-9", "1e-12"] {
+            let tolerance = format!("solver.relative_tolerance={tolerance}");
+            let kept = simulate(&case("tests/kinds/untilted-block.toml", &[engine, &tolerance]));
+            let count = |k: usize| kept.contacts.iter().filter(|c| c.clearance == k).count();
+            assert!(count(0) + count(2) >= 20, "{engine} {tolerance}");
+            assert_eq!([count(0), count(2)], [count(1), count(3)], "{engine} {tolerance}");
+        }
+    }
+}
+
+#[test]
 fn what_is_wrong_with_a_guide_is_told_with_its_key() {
     let own = |set: &str| format!("joints.slide.clearance.{set}");
     let cases = [

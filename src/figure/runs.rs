@@ -93,9 +93,10 @@ impl Run {
     }
 
     /// Whether a clearance is a journal's, and has the name of its joint; else it is one corner of a
-    /// block or one flank of a slot.
+    /// block or one flank of a slot, and has a number behind that.
     pub fn is_journal(&self, clearance: &str) -> bool {
-        self.index(Dimension::Joint, clearance).is_some()
+        let is_joint = |name: &str| self.index(Dimension::Joint, name).is_some();
+        is_joint(clearance) || clearance.rsplit_once('_').is_none_or(|(joint, _)| !is_joint(joint))
     }
 
     /// Whether the mechanism has no clearance.

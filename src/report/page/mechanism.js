@@ -93,7 +93,6 @@ export function drawMechanism(pen, run, view, look) {
   for (let body = 0; body < run.bodies.length; body++) drawBody(pen, outline(places, body).map(at), look);
   for (const centre of places.centres) drawCentre(pen, at(centre));
   for (const ends of run.drawing.springs) drawSpring(pen, ...ends.map((end) => at(places.place(end))), look.symbol);
-  for (const load of run.drawing.loads) drawLoad(pen, run, load, places, at, look.symbol);
   run.drawing.joints.forEach((joint, index) => {
     const centre = at(places.place(seat(joint)));
     const colour = seriesColour(look.colourOf(run.joints[index]));
@@ -105,6 +104,7 @@ export function drawMechanism(pen, run, view, look) {
     else if (!joint.walls?.pin) drawPin(pen, centre, colour);
     if (joint.driven) drawDrive(pen, centre, view, joint, look);
   });
+  for (const load of run.drawing.loads) drawLoad(pen, run, load, places, at, look.symbol);
   const cuts = [];
   run.drawing.joints.forEach((joint, index) => {
     if (look.forces) drawForce(pen, run, joint, index, at(places.place(seat(joint))), view, look, cuts);
