@@ -18,9 +18,17 @@
 //! through the multipliers a step of length 1/c_j makes of it an error of
 //!
 //! ```text
-//! v:  (Σ |∂v̇/∂q| ε|q| + Σ |∂v̇/∂z| ε|z| + Σ |∂v̇/∂λ| ε|λ|) / c_j      but at most ε|q| c_j
+//! v:  (Σ |∂v̇/∂q| ε|q| + Σ |∂v̇/∂z| ε|z| + Σ |∂v̇/∂λ| (ε|λ| + δλ)) / c_j      but at most ε|q| c_j
 //! q:  that of v / c_j
 //! z:  ε (Σ |∂ż/∂q| |q| + Σ |∂ż/∂v| |v|) / c_j
+//! ```
+//!
+//! with what a multiplier must change by, Φ_q M⁻¹ Φ_qᵀ taken by its diagonal, where the velocities of
+//! which IDA takes differences are rounded: a body that only translates between others that turn has
+//! no other rate than this.
+//!
+//! ```text
+//! δλ = ε c_j Σ |Φ_q| |v| / (Φ_q M⁻¹ Φ_qᵀ)
 //! ```
 //!
 //! Where a and r|y| ask for less, as for a velocity that dies away under an absolute tolerance of
@@ -66,6 +74,7 @@ pub(super) struct Weights {
     speeds: Vec<f64>,
     /// What rounding makes of q, v and z in a step.
     floor: Vec<f64>,
+    balances: Balances,
     /// How often an error below the floor was asked for.
     floored: u64,
 }
@@ -101,7 +110,17 @@ impl Weights {
             None => {
                 let floor = vec![0.0; absolute.len()];
                 let speeds = scales.1.to_vec();
-                Ok(Weights { relative, absolute, norm, sizes: own, speeds, floor, floored: 0 })
+                let balances = Balances::default();
+                Ok(Weights {
+                    relative,
+                    absolute,
+                    norm,
+                    sizes: own,
+                    speeds,
+                    floor,
+                    balances,
+                    floored: 0,
+                })
             }
         }
     }
@@ -120,6 +139,7 @@ impl Weights {
     /// y = (q, v, z, λ), from the Jacobian there.
     pub(super) fn know_rounding(&mut self, t: f64, y: &[f64], cj: f64, jacobian: &impl Columns) {
         let (n, differential) = (self.sizes.len(), self.floor.len());
+        self.balances.weigh(y, n, differential, jacobian);
         let (floor_q, floor_v) = self.floor.split_at_mut(n);
         floor_v.fill(0.0);
         let mut add = |column: usize, rounding: f64, rows: Range<usize>| {
@@ -138,8 +158,12 @@ impl Weights {
                 add(j, f64::EPSILON * v.abs(), 2 * n..differential);
             }
         }
-        for (k, other) in y.iter().enumerate().skip(2 * n) {
-            add(k, f64::EPSILON * other.abs(), n..2 * n);
+        for (k, z) in y.iter().enumerate().take(differential).skip(2 * n) {
+            add(k, f64::EPSILON * z.abs(), n..2 * n);
+        }
+        let multipliers = y.iter().enumerate().skip(differential);
+        for ((k, lambda), balance) in multipliers.zip(&self.balances.rows) {
+            add(k, f64::EPSILON * (lambda.abs() + balance.share(cj)), n..2 * n);
         }
         let (floor_v, floor_z) = floor_v.split_at_mut(n);
         floor_z.iter_mut().for_each(|z| *z /= cj);
@@ -172,6 +196,59 @@ impl Weights {
         }
         self.floored += u64::from(below);
         algebraic.fill(0.0);
+    }
+}
+
+/// What the constraints balance.
+#[derive(Debug, Clone, PartialEq, Default)]
+struct Balances {
+    rows: Vec<Balance>,
+    /// By velocity, the multipliers that act on it: which, and ∂v̇/∂λ.
+    actions: Vec<Vec<(usize, f64)>>,
+}
+
+/// What one constraint balances, in an equation that c_j makes large.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+struct Balance {
+    /// c_j Σ |Φ_q| |v| (m/s², rad/s²).
+    sum: f64,
+    /// c_j times the diagonal entry of Φ_q M⁻¹ Φ_qᵀ (1/kg s).
+    mobility: f64,
+}
+
+impl Balance {
+    /// The multiplier that a relative error of the velocities comes to, for each 1/c_j.
+    fn share(&self, cj: f64) -> f64 {
+        let share = self.sum / self.mobility * cj;
+        if share.is_finite() { share } else { 0.0 }
+    }
+}
+
+impl Balances {
+    /// Weighs all at y = (q, v, z, λ), of n coordinates and with multipliers from the first on.
+    fn weigh(&mut self, y: &[f64], n: usize, first: usize, jacobian: &impl Columns) {
+        let size = y.len();
+        self.rows.clear();
+        self.rows.resize(size - first, Balance::default());
+        self.actions.resize(n, Vec::new());
+        self.actions.iter_mut().for_each(Vec::clear);
+        for column in first..size {
+            let actions = &mut self.actions;
+            jacobian.each(column, n..2 * n, |row, entry| {
+                if entry != 0.0 {
+                    actions[row - n].push((column, entry));
+                }
+            });
+        }
+        for (j, (actions, v)) in self.actions.iter().zip(&y[n..]).enumerate() {
+            let rows = &mut self.rows;
+            jacobian.each(n + j, first..size, |row, entry| {
+                let balance = &mut rows[row - first];
+                balance.sum += (entry * v).abs();
+                let acting = actions.iter().find(|(column, _)| *column == row);
+                balance.mobility += acting.map_or(0.0, |(_, action)| (entry * action).abs());
+            });
+        }
     }
 }
 
