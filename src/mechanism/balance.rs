@@ -114,6 +114,35 @@ impl<S: Scalar> Mechanism<S> {
         Ok(())
     }
 
+    /// Stands at a state whose accelerations and multipliers are known, as if evaluated there: at a
+    /// singular position no equation tells them.
+    pub fn stand_with(&mut self, state: State<'_, S>, accelerations: &[S], multipliers: &[S]) {
+        self.place(&state);
+        self.now.z.copy_from_slice(state.z);
+        self.apply_loads(&[]);
+        self.reach();
+        self.now.lambda.copy_from_slice(multipliers);
+        self.apply_multipliers();
+        self.know(accelerations);
+        self.drive();
+        self.measure_powers();
+    }
+
+    /// Stands at a state with these accelerations, and with forces as they were last evaluated beside it.
+    pub fn stand_on(&mut self, state: State<'_, S>, accelerations: &[S]) {
+        self.place(&state);
+        self.know(accelerations);
+    }
+
+    fn know(&mut self, accelerations: &[S]) {
+        self.now.v_dot.copy_from_slice(accelerations);
+        let known = accelerations.as_chunks().0;
+        for (FreeBody { body, .. }, [x, y, angular]) in self.layout.free.iter().zip(known) {
+            let linear = Vector::new(*x, *y);
+            self.now.accelerations[*body] = Motion { linear, angular: *angular };
+        }
+    }
+
     /// Finds the arms of the joints and Φ_q, as placed.
     pub(super) fn reach(&mut self) {
         self.find_arms();

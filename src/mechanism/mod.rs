@@ -289,6 +289,11 @@ impl<S: Scalar> Mechanism<S> {
         self.model.drives().first().and_then(|drive| drive.course.period())
     }
 
+    /// Whether friction hangs on the forces of ideal joints.
+    pub fn rubs(&self) -> bool {
+        !self.rubbings.is_empty()
+    }
+
     /// The largest angular rate of any body at the state last evaluated, or of any drive later
     /// (rad/s); a travel counts over the mechanism's length.
     pub fn fastest_turn(&self) -> f64 {

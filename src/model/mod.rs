@@ -27,6 +27,7 @@ use crate::parameter::{Takes, Value, Values};
 use crate::plane::Vector;
 use crate::scalar::{Decimal, F256, Scalar};
 use std::ops::Range;
+use std::sync::Arc;
 
 /// A joint of a model.
 #[derive(Debug, Clone)]
@@ -110,6 +111,8 @@ impl Names {
 /// A mechanism whose every number is in range and whose every reference leads somewhere.
 #[derive(Debug, Clone)]
 pub struct Model<S> {
+    /// What it was read from.
+    description: Arc<Description>,
     names: Names,
     origin: Vector<S>,
     masses: Vec<S>,
@@ -178,6 +181,7 @@ impl<S: Scalar> Model<S> {
             given.map(|(_, rate)| rate.value())
         };
         Ok(Model {
+            description: Arc::new(description.clone()),
             goes_on: description.clock.is_some(),
             contacts: names.clearances.iter().map(contact).collect(),
             masses: with_ground(|body| &body.mass),
@@ -195,6 +199,11 @@ impl<S: Scalar> Model<S> {
             names,
             origin: frame.origin(),
         })
+    }
+
+    /// What it was read from.
+    pub fn description(&self) -> &Description {
+        &self.description
     }
 
     /// Names of the parts.

@@ -575,7 +575,7 @@ pub static DATASETS: [Dataset; 82] = {
             "event_rate",
             "m/s",
             "penetration rate at the event; slip velocity at a friction kink; independent share of the \
-             constraints at a singular position",
+             constraints at a singular position, 0 where the run went on through it",
             Event(at!(rate)),
         ),
         flag(

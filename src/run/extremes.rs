@@ -254,6 +254,11 @@ impl Tracker {
         self.take_last();
     }
 
+    /// Waits for a restart: what lies between is looked at by nobody.
+    pub fn rest(&mut self) {
+        self.known = 0;
+    }
+
     /// Takes the end of the last step as a candidate for records.
     fn take_last(&mut self) {
         let values = std::mem::take(&mut self.ring[self.newest].values);

@@ -58,7 +58,8 @@ where
     pub(super) fn follow_extremes(&mut self) -> Outcome<(), S, E, R> {
         let parts = self.parts();
         let Some(tracker) = &mut self.tracker else { return Ok(()) };
-        if !tracker.has_moved() {
+        // what is told in a passage may have no bound
+        if !tracker.has_moved() || self.engine.passage().is_some() {
             return Ok(());
         }
         if parts.count == 1 && tracker.is_quiet(self.paces[1]) {
@@ -66,7 +67,7 @@ where
             return Ok(());
         }
         let mut inside = Inside {
-            engine: self.engine,
+            engine: &mut self.engine,
             at: &mut self.scratch,
             ends: &mut self.ends,
             known: false,

@@ -5,6 +5,8 @@
 //! work of the drives is a Gauss–Legendre quadrature of their power.
 
 use super::extremes::{Look, Parts, Tracker};
+use super::passage::Passage;
+use super::passing::{Exact, passage_near};
 use super::{
     Checkpoint, Error, Event, EventKind, Progress, Reached, Recorder, RulingCounts, Schedule,
     Stretch, Watcher,
@@ -12,6 +14,7 @@ use super::{
 use crate::dae::{Fault, Snapshot, State, System};
 use crate::halt;
 use crate::mechanism::{Mechanism, Observation};
+use crate::model::Owner;
 use crate::scalar::Scalar;
 use std::convert::Infallible;
 use std::ops::ControlFlow;
@@ -59,7 +62,7 @@ fn go<S: Scalar, R: Recorder + ?Sized>(
     recorder: &mut R,
     watch: Watcher<'_>,
 ) -> Result<Reached<S>, Error<Infallible, R::Error>> {
-    let mut now = mechanism.start().clone();
+    let mut walk = Walk::new(mechanism.start().clone());
     let fastest = mechanism.fastest_turn().max(1e-300);
     let rule = gauss();
     let corners = mechanism.corners();
@@ -68,10 +71,11 @@ fn go<S: Scalar, R: Recorder + ?Sized>(
         .then(|| Tracker::new(mechanism.measures(), mechanism.revolution(), mechanism.length()));
     let mut next = 0;
     if let Some(kept) = stretch.from {
-        (now, progress, next) = (kept.state.clone(), kept.progress, kept.next_sample);
-        let time = now.time;
+        (progress, next) = (kept.progress, kept.next_sample);
+        walk = Walk::new(kept.state.clone());
+        let time = walk.now.time;
         let fault = |source| Error::System { time: time.to_f64(), source };
-        reach(mechanism, &mut now, time).map_err(fault)?;
+        walk.reach(mechanism, time).map_err(fault)?;
         if let (Some(tracker), Some(records)) = (&mut tracker, &kept.extremes) {
             tracker.take_up(records);
             tracker.restart(time.to_f64(), |values| mechanism.measure(values));
@@ -84,18 +88,18 @@ fn go<S: Scalar, R: Recorder + ?Sized>(
         let due = |time: &S| stretch.until.is_none_or(|until| *time <= until && !only_here);
         let sample = sample.filter(due);
         let Some(time) = sample.or(stretch.until) else { break };
-        let span = time - now.time;
+        let span = time - walk.now.time;
         let parts = (span.to_f64() * fastest / LARGEST_TURN).ceil().max(1.0);
         for part in 1..=parts as u64 {
             let left = parts - part as f64 + 1.0;
-            let to = now.time + (time - now.time) * S::from_f64(1.0 / left);
+            let to = walk.now.time + (time - walk.now.time) * S::from_f64(1.0 / left);
             let to = if left > 1.0 { to } else { time };
             let fault = |source| Error::System { time: to.to_f64(), source };
-            let begin = now.time;
+            let begin = walk.now.time;
             for (corner, owner) in corners.iter().filter(|(corner, _)| *corner <= to) {
                 // the quadrature sees no jump
-                if *corner > now.time && *corner < to {
-                    advance(mechanism, &mut now, *corner, &rule).map_err(fault)?;
+                if *corner > walk.now.time && *corner < to {
+                    walk.advance(mechanism, *corner, &rule).map_err(fault)?;
                 }
                 if *corner > begin && *corner < schedule.duration() {
                     let (time, kind) = (corner.to_f64(), EventKind::CourseChanges);
@@ -104,9 +108,15 @@ fn go<S: Scalar, R: Recorder + ?Sized>(
                     progress.events += 1;
                 }
             }
-            advance(mechanism, &mut now, to, &rule).map_err(fault)?;
+            walk.advance(mechanism, to, &rule).map_err(fault)?;
+            if let Some((time, owner)) = walk.passed.take_if(|(time, _)| *time <= to) {
+                let (time, kind) = (time.to_f64(), EventKind::Singular);
+                let event = Event { time, owner, kind, rate: 0.0 };
+                recorder.event(event).map_err(Error::Recorder)?;
+                progress.events += 1;
+            }
             if let Some(tracker) = &mut tracker {
-                follow(tracker, mechanism, &now, recorder)?;
+                follow(tracker, mechanism, &walk, recorder)?;
             }
             progress.steps += 1;
             progress.step = (span.to_f64()) / parts;
@@ -119,15 +129,15 @@ fn go<S: Scalar, R: Recorder + ?Sized>(
         }
         if sample.is_none() {
             let extremes = tracker.as_mut().map(|tracker| tracker.hold());
-            let kept = Checkpoint { extremes, ..Checkpoint::bare(now, next, progress) };
+            let kept = Checkpoint { extremes, ..Checkpoint::bare(walk.now, next, progress) };
             return Ok(Reached::Checkpoint(Box::new(kept)));
         }
-        let observation = mechanism.observe(schedule.time(next), &now.integrals);
+        let observation = mechanism.observe(schedule.time(next), &walk.now.integrals);
         next += 1;
         progress.samples += 1;
         recorder.sample(&observation).map_err(Error::Recorder)?;
     }
-    if let Some(last) = tracker.and_then(|tracker| tracker.last(now.time.to_f64())) {
+    if let Some(last) = tracker.and_then(|tracker| tracker.last(walk.now.time.to_f64())) {
         recorder.revolution(&last).map_err(Error::Recorder)?;
     }
     let _ = watch(&progress);
@@ -138,10 +148,15 @@ fn go<S: Scalar, R: Recorder + ?Sized>(
 fn follow<S: Scalar, R: Recorder + ?Sized>(
     tracker: &mut Tracker,
     mechanism: &mut Mechanism<S>,
-    now: &Snapshot<S>,
+    walk: &Walk<S>,
     recorder: &mut R,
 ) -> Result<(), Error<Infallible, R::Error>> {
-    let time = now.time.to_f64();
+    let time = walk.now.time.to_f64();
+    if walk.passage.is_some() {
+        // what is told in a passage may have no bound
+        tracker.rest();
+        return Ok(());
+    }
     if !tracker.has_begun() {
         tracker.restart(time, |values| mechanism.measure(values));
         return Ok(());
@@ -157,24 +172,24 @@ fn follow<S: Scalar, R: Recorder + ?Sized>(
     let failed = |source| Error::System { time, source };
     // what stands for a sketch is assembled, and exact
     let whole = Parts { count: 1, sketched: true, phase: 0.0 };
-    tracker.examine(whole, &mut Nearby { mechanism, at: now.clone() }).map_err(failed)?;
+    tracker.examine(whole, &mut Nearby { mechanism, walk: walk.clone() }).map_err(failed)?;
     for revolution in tracker.finished() {
         recorder.revolution(&revolution).map_err(Error::Recorder)?;
     }
-    reach(mechanism, &mut now.clone(), now.time).map_err(failed)
+    walk.clone().reach(mechanism, walk.now.time).map_err(failed)
 }
 
 /// A mechanism that is assembled at times near to the last.
 struct Nearby<'a, S> {
     mechanism: &'a mut Mechanism<S>,
-    at: Snapshot<S>,
+    walk: Walk<S>,
 }
 
 impl<S: Scalar> Look for Nearby<'_, S> {
     type Error = Fault;
 
     fn look(&mut self, time: f64, _: bool, values: &mut [f64]) -> Result<f64, Fault> {
-        reach(self.mechanism, &mut self.at, S::from_f64(time))?;
+        self.walk.reach(self.mechanism, S::from_f64(time))?;
         self.mechanism.measure(values);
         Ok(time)
     }
@@ -196,7 +211,7 @@ pub struct TooFar {
 #[derive(Debug, Clone)]
 pub struct Assembled<S> {
     mechanism: Mechanism<S>,
-    now: Snapshot<S>,
+    walk: Walk<S>,
     stride: f64,
 }
 
@@ -205,9 +220,9 @@ impl<S: Scalar> Assembled<S> {
     /// motion does not follow from the drives alone.
     pub fn new(mechanism: Mechanism<S>) -> Option<Self> {
         let follows = mechanism.freedoms() == 0 && mechanism.modes().is_empty();
-        let now = mechanism.start().clone();
+        let walk = Walk::new(mechanism.start().clone());
         let stride = LARGEST_TURN / mechanism.fastest_turn().max(1e-300);
-        follows.then_some(Assembled { mechanism, now, stride })
+        follows.then_some(Assembled { mechanism, walk, stride })
     }
 
     /// Time (s) in which the body that is the fastest at the start turns by 0.05 rad.
@@ -227,68 +242,109 @@ impl<S: Scalar> Assembled<S> {
     /// # Errors
     /// A position that cannot be reached or is singular.
     pub fn observe(&mut self, time: S) -> Result<Observation, Fault> {
-        let from = self.now.time;
+        let from = self.walk.now.time;
         let strides = ((time - from).abs().to_f64() / self.stride).ceil().max(1.0);
         if !(strides <= MOST_STRIDES) {
             return Err(Fault::Fatal(Box::new(TooFar { strides })));
         }
         for k in 1..strides as u64 {
             let part = S::from_f64(k as f64 / strides);
-            reach(&mut self.mechanism, &mut self.now, from + (time - from) * part)?;
+            self.walk.reach(&mut self.mechanism, from + (time - from) * part)?;
         }
-        reach(&mut self.mechanism, &mut self.now, time)?;
-        Ok(self.mechanism.observe(time.to_f64(), &self.now.integrals))
+        self.walk.reach(&mut self.mechanism, time)?;
+        Ok(self.mechanism.observe(time.to_f64(), &self.walk.now.integrals))
     }
 }
 
-/// Goes on to a time: work of the drives on the way, then the state there, evaluated.
-fn advance<S: Scalar>(
-    mechanism: &mut Mechanism<S>,
-    now: &mut Snapshot<S>,
-    to: S,
-    rule: &[(S, S); 4],
-) -> Result<(), Fault> {
-    let span = to - now.time;
-    if span > S::zero() {
-        let mut inside = now.clone();
-        for (node, weight) in rule {
-            reach(mechanism, &mut inside, now.time + span * *node)?;
-            for (sum, power) in now.integrals.iter_mut().zip(mechanism.powers()) {
-                *sum += span * *weight * *power;
-            }
-        }
-        let integrals = std::mem::take(&mut now.integrals);
-        *now = inside;
-        now.integrals = integrals;
-    }
-    reach(mechanism, now, to)
+/// Where a mechanism without freedom stands, and the passage that it is in.
+#[derive(Debug, Clone)]
+struct Walk<S> {
+    now: Snapshot<S>,
+    passage: Option<Box<Passage<S>>>,
+    /// When it was in the last singular position that it came to, and whose constraints depended on the
+    /// others there, until that is told.
+    passed: Option<(S, Owner)>,
+    exact: Exact,
 }
 
-/// Moves a state to another time: along its velocity and acceleration, then onto the constraints;
-/// in as many strides as keep it on its branch. Beside a dead centre the other branch is near, and
-/// Newton's method ends on either: where it moves the mechanism by more than a share of what the
-/// stride does, or the sign of det Φ_q changes, the stride is halved.
-fn reach<S: Scalar>(
-    mechanism: &mut Mechanism<S>,
-    state: &mut Snapshot<S>,
-    time: S,
-) -> Result<(), Fault> {
-    let mut to = time;
-    for _ in 0..MOST_PARTS {
-        match stride(mechanism, state, to) {
-            Ok(true) if to == time => return Ok(()),
-            Ok(true) => to = time,
-            fell => {
-                let half = state.time + (to - state.time) * S::ratio(1, 2);
-                if half == state.time || half == to {
-                    fell?;
-                    break;
+impl<S: Scalar> Walk<S> {
+    fn new(now: Snapshot<S>) -> Self {
+        Walk { now, passage: None, passed: None, exact: Exact::default() }
+    }
+
+    /// Goes on to a time: work of the drives on the way, then the state there, evaluated.
+    fn advance(
+        &mut self,
+        mechanism: &mut Mechanism<S>,
+        to: S,
+        rule: &[(S, S); 4],
+    ) -> Result<(), Fault> {
+        let (begin, mut integrals) = (self.now.time, self.now.integrals.clone());
+        let span = to - begin;
+        if span > S::zero() {
+            for (node, weight) in rule {
+                self.reach(mechanism, begin + span * *node)?;
+                for (sum, power) in integrals.iter_mut().zip(mechanism.powers()) {
+                    *sum += span * *weight * *power;
                 }
-                to = half;
             }
         }
+        self.reach(mechanism, to)?;
+        self.now.integrals = integrals;
+        Ok(())
     }
-    Err(Fault::Fatal(Box::new(Undecided { time: state.time.to_f64() })))
+
+    /// Moves to another time: along velocity and acceleration, then onto the constraints; in as many
+    /// strides as keep it on its branch. Beside a dead centre the other branch is near, and
+    /// Newton's method ends on either: where it moves the mechanism by more than a share of what the
+    /// stride does, or the sign of det Φ_q changes, the stride is halved. Through a singular position where
+    /// two branches cross a passage leads.
+    fn reach(&mut self, mechanism: &mut Mechanism<S>, time: S) -> Result<(), Fault> {
+        if let Some(passage) = &self.passage {
+            let (from, to) = (&passage.from, &passage.to);
+            let (first, last) = if from.time < to.time { (from, to) } else { (to, from) };
+            if first.time <= time && time <= last.time {
+                passage.show(mechanism, time, &mut self.now);
+                return Ok(());
+            }
+            self.now.clone_from(if time < first.time { first } else { last });
+            self.passage = None;
+        }
+        if time != self.now.time && self.finds_passage(mechanism, time) {
+            return self.reach(mechanism, time);
+        }
+        let mut to = time;
+        for _ in 0..MOST_PARTS {
+            match stride(mechanism, &mut self.now, to) {
+                Ok(true) if to == time => return Ok(()),
+                Ok(true) => to = time,
+                fell => {
+                    if self.finds_passage(mechanism, time) {
+                        return self.reach(mechanism, time);
+                    }
+                    let half = self.now.time + (to - self.now.time) * S::ratio(1, 2);
+                    if half == self.now.time || half == to {
+                        fell?;
+                        break;
+                    }
+                    to = half;
+                }
+            }
+        }
+        Err(Fault::Fatal(Box::new(Undecided { time: self.now.time.to_f64() })))
+    }
+
+    /// Enters the passage through a singular position that is near on the way to a time (s), if there is
+    /// one.
+    fn finds_passage(&mut self, mechanism: &mut Mechanism<S>, time: S) -> bool {
+        let found = passage_near(mechanism, &self.now, time > self.now.time);
+        let found = found.filter(|passage| self.exact.agrees(mechanism, passage));
+        if let Some(passage) = &found {
+            self.passed = Some((passage.time(), passage.owner));
+        }
+        self.passage = found.map(Box::new);
+        self.passage.is_some()
+    }
 }
 
 /// Strides that a way to the next time may be parted into.

@@ -5,10 +5,13 @@
 //! that the engine returns is projected, never polished, and the new mode is latched from it.
 
 mod checkpoint;
+mod collocation;
 mod erased;
 mod extremes;
 mod inside;
 mod kinematic;
+mod passage;
+mod passing;
 mod peak;
 mod recorder;
 mod sampling;
@@ -35,6 +38,7 @@ use crate::model::Owner;
 use crate::scalar::{Scalar, bits};
 use extremes::Tracker;
 use inside::End;
+use passing::Passing;
 use sampling::Mark;
 use serde::{Deserialize, Serialize};
 use std::ops::ControlFlow;
@@ -179,7 +183,7 @@ type Outcome<T, S, E, R> = Result<T, Error<<E as Engine<S>>::Error, <R as Record
 
 /// A run in progress.
 struct Run<'a, S: Scalar, E: Engine<S>, R: ?Sized> {
-    engine: &'a mut E,
+    engine: Passing<'a, S, E>,
     recorder: &'a mut R,
     schedule: &'a Schedule,
     ledger: Ledger,
@@ -273,7 +277,7 @@ where
         touching: vec![None; clearances],
         allowed_depths,
         ledger: engine.system().ledger(),
-        engine,
+        engine: Passing::new(engine, tolerance),
         recorder,
         schedule,
         tolerance,
@@ -364,6 +368,9 @@ where
             self.follow_extremes()?;
             self.sample(advance == Advance::Event)?;
             self.check_depths()?;
+            if self.engine.passage().is_some() {
+                self.pass()?;
+            }
             match advance {
                 Advance::Event => self.event()?,
                 Advance::Stepped if Some(self.engine.now().time) == corner => {
@@ -583,6 +590,17 @@ where
         let state = self.scratch.clone();
         self.restart(&state)?;
         self.segment += 1;
+        Ok(())
+    }
+
+    /// Records the singular position that the last step led through.
+    fn pass(&mut self) -> Outcome<(), S, E, R> {
+        let Some(passage) = self.engine.passage() else { return Ok(()) };
+        let owner = passage.owner;
+        self.scratch.time = passage.time();
+        self.segment += 1;
+        self.tell_event(owner, EventKind::Singular, 0.0)?;
+        self.restart_extremes();
         Ok(())
     }
 

@@ -213,6 +213,10 @@ where
 
     /// Has the system evaluated near a time, between two others (s); returns where.
     fn glance(&mut self, aim: S, left: S, right: S) -> Outcome<S, S, E, R> {
+        if self.engine.show(aim, &mut self.scratch) {
+            self.look_around();
+            return Ok(aim);
+        }
         let glanced = self.engine.glance(aim, GLANCE, &mut self.scratch);
         glanced.map_err(|source| self.stopped(source))?;
         if !(self.scratch.time > left && self.scratch.time < right) {

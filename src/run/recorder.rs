@@ -32,8 +32,8 @@ pub enum Effect {
     SwitchesMode,
     /// The engine begins anew from the same state.
     BeginsAnew,
-    /// The run ends there.
-    Stops,
+    /// The engine begins anew behind it where the way is clear; the run ends there where it is not.
+    PassesOrStops,
 }
 
 impl EventKind {
@@ -96,7 +96,7 @@ impl EventKind {
             | EventKind::FrictionKink
             | EventKind::Tension => Effect::SwitchesMode,
             EventKind::CourseChanges => Effect::BeginsAnew,
-            EventKind::Singular => Effect::Stops,
+            EventKind::Singular => Effect::PassesOrStops,
         }
     }
 }
@@ -111,7 +111,8 @@ pub struct Event {
     /// What happened.
     pub kind: EventKind,
     /// Penetration rate (m/s); the slip velocity (m/s) at a friction kink; 0 where a course changes; at a
-    /// singular position the share that its owner's constraints do not depend on the others.
+    /// singular position the share that its owner's constraints do not depend on the others, 0 where the
+    /// run went on through it.
     pub rate: f64,
 }
 

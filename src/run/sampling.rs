@@ -119,6 +119,9 @@ where
 
     /// Has the system evaluated at a time within the last step; the state stands in `scratch`.
     pub(super) fn look(&mut self, time: S, project: bool) -> Outcome<(), S, E, R> {
+        if self.engine.show(time, &mut self.scratch) {
+            return Ok(());
+        }
         self.engine.within(time, &mut self.scratch).map_err(|source| self.stopped(source))?;
         // where another run stood it was on the constraints, and is to be found to the last bit
         let as_given = time == S::zero() && self.engine.system().model().goes_on();

@@ -20,6 +20,10 @@ impl Scalar for f64 {
         x.to_f64()
     }
 
+    fn octuple(self) -> F256 {
+        F256::from_f64(self)
+    }
+
     fn to_bits_text(self) -> String {
         format!("{:016x}", self.to_bits())
     }

@@ -131,6 +131,10 @@ impl<S: Scalar> Scalar for Dual<S> {
         Dual::from_re(S::from_octuple(x))
     }
 
+    fn octuple(self) -> F256 {
+        self.re.octuple()
+    }
+
     fn to_bits_text(self) -> String {
         self.re.to_bits_text() + &self.eps.to_bits_text()
     }

@@ -64,6 +64,9 @@ pub trait Scalar:
     /// The number nearest to a 71-digit one.
     fn from_octuple(x: F256) -> Self;
 
+    /// The number (its real part) in 71 digits, exactly.
+    fn octuple(self) -> F256;
+
     /// All bits of the number, in hexadecimal.
     fn to_bits_text(self) -> String;
 

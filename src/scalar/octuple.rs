@@ -76,6 +76,10 @@ impl Scalar for F256 {
         x
     }
 
+    fn octuple(self) -> F256 {
+        self
+    }
+
     fn to_bits_text(self) -> String {
         let (high, low) = self.to_bits();
         format!("{high:032x}{low:032x}")

@@ -82,7 +82,7 @@ crank0 = {{ angle = 1.5707963267948966, angular_velocity = -1.0, fixed = true }}
         out,
         "
 [run]
-duration        = 0.7                   # s; a moment later all links lie flat, a singular position
+duration        = 10.0                  # s; the links come to lie flat ten times, from 0.7 s on
 sample_interval = 1e-2                  # s
 
 [solver]
