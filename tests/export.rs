@@ -298,6 +298,80 @@ fn the_scene_for_openmbv_moves_as_the_mechanism_does() {
     }
 }
 
+/// The contours (m) of a shape in a scene.
+fn contours(xml: &str, shape: &str) -> Vec<Vec<[f64; 2]>> {
+    let (_, from) = xml.split_once(&format!("<Extrusion name=\"{shape}\">")).unwrap();
+    let (shape, _) = from.split_once("</Extrusion>").unwrap();
+    let corner = |text: &str| {
+        let mut numbers = text.split(',').map(|number| number.trim().parse::<f64>().unwrap());
+        [numbers.next().unwrap(), numbers.next().unwrap()]
+    };
+    let contours = shape.split("<contour>[").skip(1);
+    contours.map(|text| text.split(']').next().unwrap().split(';').map(corner).collect()).collect()
+}
+
+#[test]
+fn the_scene_for_openmbv_has_walls_blocks_racks_pinions_and_springs() {
+    let guided = Run::of("block-in-guide", &["run.sample_interval=1e-4"]);
+    let output = guided.beside("scene.ombvx");
+    let written = |file: &ResultFile, output: &Path| {
+        let _alone = alone();
+        export(file, Format::OpenMbv, TableName::Samples, output, false).unwrap();
+    };
+    written(&guided.file(), &output);
+    let scene = std::fs::read_to_string(&output).unwrap();
+    let motion = hdf5::File::open(guided.beside("scene.ombvh5")).unwrap();
+    let motion = motion.dataset("bodies/block/data").unwrap().read_2d::<f64>().unwrap();
+    // the block stays between the faces of the walls, and comes to them
+    let faces = [("wall_1_slide", 1.0), ("wall_2_slide", -1.0)].map(|(wall, side)| {
+        let corners = contours(&scene, wall).remove(0);
+        corners.iter().map(|[_, y]| side * y).fold(f64::INFINITY, f64::min)
+    });
+    assert_eq!(faces, [0.0255; 2]);
+    let block = contours(&scene, "block_slide").remove(0);
+    let rises = motion.rows().into_iter().flat_map(|row| {
+        let (sin, cos) = row[6].sin_cos();
+        block.iter().map(move |[x, y]| (row[2] + sin * x + cos * y).abs()).collect::<Vec<_>>()
+    });
+    let highest = rises.fold(0.0, f64::max);
+    assert!((highest - 0.0255).abs() < 2e-5, "{highest}");
+
+    let run = Run::of("../tests/kinds/loads", &["run.duration=0.1"]);
+    let file = run.file();
+    let output = run.beside("scene.ombvx");
+    written(&file, &output);
+    let scene = std::fs::read_to_string(&output).unwrap();
+    let things = elements(&scene);
+    assert!(things.iter().any(|(depth, element, name)| {
+        (*depth, element.as_str(), name.as_deref()) == (2, "CoilSpring", Some("coil"))
+    }));
+    // its ends are at the points of the barrel and the wheel
+    let motion = hdf5::File::open(run.beside("scene.ombvh5")).unwrap();
+    let coil = motion.dataset("springs/coil/data").unwrap().read_2d::<f64>().unwrap();
+    let column = |name: &str| file.column(name).unwrap();
+    let (x, y, angle) =
+        (column("position_x.barrel"), column("position_y.barrel"), column("angle.barrel"));
+    for row in 0..coil.nrows() {
+        let (sin, cos) = angle[row].sin_cos();
+        let end = [x[row] + 0.05 * cos - 0.01 * sin, y[row] + 0.05 * sin + 0.01 * cos];
+        assert!((coil[[row, 1]] - end[0]).hypot(coil[[row, 2]] - end[1]) < 1e-15);
+        assert_eq!(coil[[row, 4]], column("position_x.wheel")[row]);
+        assert_eq!(coil[[row, 5]], column("position_y.wheel")[row]);
+    }
+    // the pinion touches its rack: to the right of the axis, for its radius is negative
+    let across = |[x, y]: &[f64; 2]| (2.0 * (y + 0.3) - (x - 0.5)) / 5.0_f64.sqrt();
+    let rack = contours(&scene, "rack_teeth").remove(0);
+    let face = rack.iter().map(across).fold(f64::NEG_INFINITY, f64::max);
+    assert!((face + 0.08).abs() < 1e-8, "{face}");
+    let pinion = contours(&scene, "pinion_teeth").remove(0);
+    assert!(pinion.iter().all(|[x, y]| (x.hypot(*y) - 0.08).abs() < 1e-8));
+    // the block of the piston turns with the piston
+    let block = contours(&scene, "block_guide").remove(0);
+    let along = [block[1][0] - block[0][0], block[1][1] - block[0][1]];
+    let turned = along[1].atan2(along[0]);
+    assert!((turned - (1.0_f64.atan2(2.0) - 0.3)).abs() < 1e-6, "{turned}");
+}
+
 #[test]
 fn adaptive_samples_make_an_even_film() {
     let run = Run::of("four-bar-a", &["run.duration=0.001", "run.sampling=adaptive"]);

@@ -8,9 +8,10 @@
 //! |---|---|
 //! | rigid body | time, x, y, z, Cardan angles α, β, γ, colour |
 //! | arrow | time, x, y, z of its tip, vector x, y, z, colour |
+//! | coil spring | time, x, y, z of one end, x, y, z of the other, colour |
 //!
 //! Here bodies move in the plane z = 0 and turn by γ. The bodies stand in layers, the clearances are
-//! true to scale, an arrow shows the force of a joint on its second body, tip at that body's point.
+//! true to scale, guides, slots, racks and pinions stand on the bodies that have them, an arrow shows the force of a joint on its second body, tip at that body's point.
 
 mod motion;
 mod scene;

@@ -1,7 +1,7 @@
 //! The motion: an HDF5 file with a matrix for each thing of the scene.
 
 use super::super::WriteError;
-use super::scene::{Arrow, Body, Scene};
+use super::scene::{Arrow, Body, PointOnBody, Scene, Spring};
 use crate::record::{LibraryError, ResultFile, Written};
 use hdf5::file::LibraryVersion;
 use hdf5::types::VarLenAscii;
@@ -16,6 +16,17 @@ const DEFLATE: u8 = 4;
 const OF_BODY: [&str; 8] = ["Time", "x", "y", "z", "alpha", "beta", "gamma", "color"];
 const OF_ARROW: [&str; 8] =
     ["Time", "toPoint x", "toPoint y", "toPoint z", "delta x", "delta y", "delta z", "color"];
+
+const OF_SPRING: [&str; 8] = [
+    "Time",
+    "fromPoint x",
+    "fromPoint y",
+    "fromPoint z",
+    "toPoint x",
+    "toPoint y",
+    "toPoint z",
+    "color",
+];
 
 /// The columns of the result file that move the scene.
 struct Track<'a> {
@@ -41,6 +52,14 @@ pub(super) fn write(
             put(&bodies, &body.name, &OF_BODY, &motion).map_err(library)?;
             written.values(&format!("bodies/{}/data", body.name), &flat(&motion));
         }
+        if !scene.springs.is_empty() {
+            let springs = output.create_group("springs").map_err(library)?;
+            for spring in &scene.springs {
+                let motion = track.of_spring(spring, scene.top())?;
+                put(&springs, &spring.name, &OF_SPRING, &motion).map_err(library)?;
+                written.values(&format!("springs/{}/data", spring.name), &flat(&motion));
+            }
+        }
         let forces = output.create_group("forces").map_err(library)?;
         for arrow in &scene.arrows {
             let motion = track.of_arrow(arrow, scene.top())?;
@@ -61,13 +80,15 @@ fn unlabelled(path: &Path, scene: &Scene) -> Option<String> {
     let bodies = scene.bodies.iter().map(|body| (format!("bodies/{}/data", body.name), OF_BODY));
     let arrows = scene.arrows.iter();
     let arrows = arrows.map(|arrow| (format!("forces/{}/data", arrow.name), OF_ARROW));
+    let springs = scene.springs.iter();
+    let springs = springs.map(|spring| (format!("springs/{}/data", spring.name), OF_SPRING));
     let file = File::with_options().with_fapl(|access| access.file_locking(false)).open(path);
     let has = |name: &str, labels: [&str; 8]| {
         let data = file.as_ref().map_err(Clone::clone)?.dataset(name)?;
         let read = data.attr("Column Label")?.read_raw::<VarLenAscii>()?;
         Ok::<_, hdf5::Error>(read.iter().map(VarLenAscii::as_str).eq(labels))
     };
-    let mut all = bodies.chain(arrows);
+    let mut all = bodies.chain(arrows).chain(springs);
     all.find(|(name, labels)| !has(name, *labels).unwrap_or(false)).map(|(name, _)| name)
 }
 
@@ -158,15 +179,32 @@ impl Track<'_> {
     }
 
     fn of_arrow(&self, arrow: &Arrow, height: f64) -> Result<Array2<f64>, WriteError> {
-        let pose = self.pose(arrow.body)?;
+        let at = self.point(arrow.at)?;
         let force_x = self.column("joint_force_x", arrow.joint)?;
         let force_y = self.column("joint_force_y", arrow.joint)?;
-        let [u, v] = arrow.point;
         Ok(self.matrix(|row| {
+            let [x, y] = at(row);
+            [x, y, height, force_x[row], force_y[row], 0.0]
+        }))
+    }
+
+    fn of_spring(&self, spring: &Spring, height: f64) -> Result<Array2<f64>, WriteError> {
+        let [from, to] = spring.between;
+        let (from, to) = (self.point(from)?, self.point(to)?);
+        Ok(self.matrix(|row| {
+            let ([x, y], [u, v]) = (from(row), to(row));
+            [x, y, height, u, v, height]
+        }))
+    }
+
+    /// Where a point is (m).
+    fn point(&self, at: PointOnBody) -> Result<impl Fn(usize) -> [f64; 2] + use<>, WriteError> {
+        let pose = self.pose(at.body)?;
+        let [u, v] = at.point;
+        Ok(move |row: usize| {
             let [x, y, angle] = pose(row);
             let (sin, cos) = angle.sin_cos();
-            let tip = [x + cos * u - sin * v, y + sin * u + cos * v];
-            [tip[0], tip[1], height, force_x[row], force_y[row], 0.0]
-        }))
+            [x + cos * u - sin * v, y + sin * u + cos * v]
+        })
     }
 }

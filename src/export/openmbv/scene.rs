@@ -1,13 +1,18 @@
 //! The scene: what the bodies look like, as OpenMBV's XML.
 
 use super::super::Error;
-use crate::model::{Description, NamedPoint, Play};
+use crate::model::{Description, JointDescription, NamedPoint, Play};
 use crate::record::ResultFile;
 use std::f64::consts::TAU;
 use std::fmt::Write;
 
 /// From one layer of bodies to the next, over the thickness of a body.
 const LAYER: f64 = 1.1;
+
+/// Length of a guide, a slot or a rack, over that of the largest body.
+const GUIDE: f64 = 1.2;
+/// Coils of a spring.
+const COILS: f64 = 6.0;
 
 /// Corners of a circle.
 const CORNERS: usize = 48;
@@ -18,6 +23,8 @@ pub(super) struct Scene {
     pub bodies: Vec<Body>,
     /// One a joint.
     pub arrows: Vec<Arrow>,
+    /// Springs between points.
+    pub springs: Vec<Spring>,
     /// Half the width of a bar (m).
     half_width: f64,
     /// Length of an arrow by force (m/N).
@@ -39,9 +46,26 @@ pub(super) struct Arrow {
     pub name: String,
     /// Index of the joint in the file.
     pub joint: usize,
-    /// Index of the second body in the file; `None` for the ground.
+    /// The joint's point on its second body.
+    pub at: PointOnBody,
+}
+
+/// A spring between two points.
+pub(super) struct Spring {
+    /// Name of the load.
+    pub name: String,
+    /// Its ends.
+    pub between: [PointOnBody; 2],
+    /// Length without force (m).
+    length: f64,
+}
+
+/// A point that moves with a body.
+#[derive(Clone, Copy)]
+pub(super) struct PointOnBody {
+    /// Index of the body in the file; `None` for the ground.
     pub body: Option<usize>,
-    /// The joint's point on that body, in its frame (m).
+    /// Where it is, in the body's frame (m).
     pub point: [f64; 2],
 }
 
@@ -65,6 +89,7 @@ impl Scene {
             shapes: bars(points, half_width)
                 .into_iter()
                 .chain(eyes(description, name, points, half_width))
+                .chain(fittings(description, name, points, half_width, 0.5 * GUIDE * extent))
                 .collect(),
         };
         let mut bodies = vec![body("ground", None, &description.ground)];
@@ -79,6 +104,7 @@ impl Scene {
             arrows: arrows
                 .filter_map(|(joint, name)| arrow(description, file, joint, name))
                 .collect(),
+            springs: springs(description, file),
             bodies,
             half_width,
             arrow_scale: if largest > 0.0 { extent / largest } else { 1.0 },
@@ -92,7 +118,7 @@ impl Scene {
 
     /// How many things move.
     pub fn things(&self) -> usize {
-        self.bodies.len() + self.arrows.len()
+        self.bodies.len() + self.arrows.len() + self.springs.len()
     }
 
     /// The scene as XML.
@@ -106,6 +132,13 @@ impl Scene {
             self.body(&mut xml, k, body);
         }
         xml.close();
+        if !self.springs.is_empty() {
+            xml.open("Group", "name=\"springs\"");
+            for spring in &self.springs {
+                self.spring(&mut xml, spring);
+            }
+            xml.close();
+        }
         xml.open("Group", "name=\"forces\"");
         for arrow in &self.arrows {
             self.arrow(&mut xml, arrow);
@@ -138,6 +171,18 @@ impl Scene {
             }
             xml.close();
         }
+        xml.close();
+    }
+
+    fn spring(&self, xml: &mut Xml, spring: &Spring) {
+        xml.open("CoilSpring", &format!("name=\"{}\"", escaped(&spring.name)));
+        xml.vector("diffuseColor", &[0.6, 0.5, 0.7]);
+        xml.element("type", "'tube'");
+        xml.number("numberOfCoils", COILS);
+        xml.number("springRadius", 0.8 * self.half_width);
+        xml.number("crossSectionRadius", 0.15 * self.half_width);
+        xml.number("nominalLength", spring.length);
+        xml.number("scaleFactor", 1.0);
         xml.close();
     }
 
@@ -263,16 +308,130 @@ fn circle([x, y]: [f64; 2], radius: f64) -> Vec<[f64; 2]> {
     (0..CORNERS).map(|k| [x + radius * angle(k).cos(), y + radius * angle(k).sin()]).collect()
 }
 
+/// What the straight joints of a body need: the walls of guides and slots and the racks of its own, blocks
+/// that slide in those of others and pinions that roll on theirs. Walls and racks are `reach` (m) long to
+/// either side of their point.
+fn fittings(
+    description: &Description,
+    body: &str,
+    points: &[NamedPoint],
+    half_width: f64,
+    reach: f64,
+) -> Vec<Shape> {
+    let mut shapes = Vec::new();
+    for joint in &description.joints {
+        if joint.part.get("axis").is_none() {
+            continue;
+        }
+        for (side, end) in joint.between().into_iter().enumerate() {
+            let Some((owner, point)) = end.split_once('.') else { continue };
+            let at = points.iter().find(|known| owner == body && known.name == point);
+            let Some(at) = at.map(place) else { continue };
+            match side {
+                0 => shapes.extend(walls(joint, at, half_width, reach)),
+                _ => shapes.extend(slider(joint, at, half_width)),
+            }
+        }
+    }
+    shapes
+}
+
+/// The walls on either side of a line through a point, or the rack beside it.
+fn walls(joint: &JointDescription, at: [f64; 2], half_width: f64, reach: f64) -> Vec<Shape> {
+    let thick = 0.4 * half_width;
+    let bar = |name: String, across: f64| {
+        let middle = across + 0.5 * thick * across.signum();
+        let outline = rectangle(at, joint.part.vector("axis"), [0.0, middle], [reach, 0.5 * thick]);
+        Shape { name, outlines: vec![outline] }
+    };
+    if joint.part.is("rack") {
+        return vec![bar(format!("rack_{}", joint.name), joint.part.number("radius"))];
+    }
+    let play = joint.clearance.as_ref().map(|clearance| &clearance.play);
+    let beside = match play {
+        Some(Play::Guide { gap, height, .. }) => 0.5 * height.to_f64() + gap.to_f64(),
+        Some(Play::Slot { gap, pin_radius }) => pin_radius.to_f64() + gap.to_f64(),
+        _ => 1.4 * half_width,
+    };
+    vec![
+        bar(format!("wall_1_{}", joint.name), beside),
+        bar(format!("wall_2_{}", joint.name), -beside),
+    ]
+}
+
+/// What slides between walls or rolls on a rack, unless it is a pin, which stands among the eyes.
+fn slider(joint: &JointDescription, at: [f64; 2], half_width: f64) -> Option<Shape> {
+    if joint.part.is("rack") {
+        let radius: f64 = joint.part.number("radius");
+        let name = format!("pinion_{}", joint.name);
+        let radius = radius.abs();
+        let outlines =
+            vec![circle(at, radius), circle(at, (radius - 0.5 * half_width).max(0.5 * radius))];
+        return Some(Shape { name, outlines });
+    }
+    if !joint.part.is("prismatic") {
+        return None;
+    }
+    let size = match joint.clearance.as_ref().map(|clearance| &clearance.play) {
+        Some(Play::Guide { length, height, .. }) => [length.to_f64(), height.to_f64()],
+        _ => [4.0 * half_width, 2.8 * half_width],
+    };
+    // the axis as the second body sees it
+    let (sin, cos) = joint.part.number::<f64>("angle").sin_cos();
+    let [x, y]: [f64; 2] = joint.part.vector("axis");
+    let axis = [cos * x + sin * y, cos * y - sin * x];
+    let outline = rectangle(at, axis, [0.0; 2], size.map(|size| 0.5 * size));
+    Some(Shape { name: format!("block_{}", joint.name), outlines: vec![outline] })
+}
+
+/// A rectangle by its middle, along an axis and across it from a point (m), and its half lengths (m).
+fn rectangle(
+    [x, y]: [f64; 2],
+    [u, v]: [f64; 2],
+    [along, across]: [f64; 2],
+    [half, half_across]: [f64; 2],
+) -> Vec<[f64; 2]> {
+    let length = u.hypot(v);
+    let (u, v) = (u / length, v / length);
+    let corner = |[i, j]: [f64; 2]| {
+        let (a, b) = (along + i * half, across + j * half_across);
+        [x + a * u - b * v, y + a * v + b * u]
+    };
+    [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(corner).to_vec()
+}
+
 fn arrow(description: &Description, file: &ResultFile, joint: usize, name: &str) -> Option<Arrow> {
     let found = description.joints.iter().find(|joint| joint.name == name)?;
-    let (body, point) = found.between()[1].split_once('.')?;
+    let at = point_on_body(description, file, found.between()[1])?;
+    Some(Arrow { name: name.to_owned(), joint, at })
+}
+
+fn springs(description: &Description, file: &ResultFile) -> Vec<Spring> {
+    let springs = description.loads.iter().filter(|load| load.part.is("spring"));
+    let drawn = springs.filter_map(|load| {
+        let [first, second] = load.part.pair("between");
+        let between =
+            [point_on_body(description, file, first)?, point_on_body(description, file, second)?];
+        let length = load.part.number("free_length");
+        Some(Spring { name: load.name.clone(), between, length })
+    });
+    drawn.collect()
+}
+
+/// A point written `body.point`.
+fn point_on_body(
+    description: &Description,
+    file: &ResultFile,
+    written: &str,
+) -> Option<PointOnBody> {
+    let (body, point) = written.split_once('.')?;
     let index = file.bodies().iter().position(|known| known == body);
     let points = match description.bodies.iter().find(|known| known.name == body) {
         Some(body) => &body.points,
         None => &description.ground,
     };
     let point = place(points.iter().find(|known| known.name == point)?);
-    Some(Arrow { name: name.to_owned(), joint, body: index, point })
+    Some(PointOnBody { body: index, point })
 }
 
 /// The largest force of any joint at a sample (N).
