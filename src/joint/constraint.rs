@@ -218,7 +218,10 @@ impl<S: Scalar> Constraint<S> {
             Constraint::Derived(joint) => {
                 joint.acceleration_slopes(poses, motions, accelerations, |place, slopes| {
                     for (row, slopes) in slopes.into_iter().enumerate().take(joint.rows()) {
-                        entry(row, place, slopes);
+                        // what is stored costs at each step
+                        if slopes != [S::zero(); 2] {
+                            entry(row, place, slopes);
+                        }
                     }
                 });
             }

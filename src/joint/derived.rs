@@ -142,20 +142,30 @@ impl<S: Scalar> Derived<S> {
         }
     }
 
-    /// ∂(Φ_qᵀ λ)/∂q: its entries, with the places of their rows and columns.
+    /// ∂(Φ_qᵀ λ)/∂q, a symmetric matrix: its entries, with the places of their rows and columns.
     pub fn bend(&self, poses: &[Pose<S>], lambda: &[S], mut entry: impl FnMut(Place, Place, S)) {
         let here = self.poses(poses);
-        for row in self.places() {
+        for (k, row) in self.places().enumerate() {
             let once: [Pose<Dual<S>>; MOST_BODIES] = seeded(&here, row);
-            for column in self.places() {
+            for column in self.places().take(k + 1) {
                 let says: [Dual<Dual<S>>; MOST_ROWS] = self.says(&seeded(&once, column));
                 let terms = says.iter().zip(lambda).map(|(says, lambda)| says.eps.eps * *lambda);
-                entry(row, column, terms.fold(S::zero(), |sum, term| sum + term));
+                let bend = terms.fold(S::zero(), |sum, term| sum + term);
+                if bend == S::zero() {
+                    continue;
+                }
+                entry(row, column, bend);
+                if column != row {
+                    entry(column, row, bend);
+                }
             }
         }
     }
 
-    /// ∂Φ̈/∂(q, v): for each coordinate, the slopes of every row by it and by its rate.
+    /// ∂Φ̈/∂(q, v): for each coordinate, the slopes of every row by it and by its rate, which are
+    /// ```text
+    /// ∂Φ̈/∂v = 2 ∂Φ̇/∂q
+    /// ```
     pub fn acceleration_slopes(
         &self,
         poses: &[Pose<S>],
@@ -170,25 +180,11 @@ impl<S: Scalar> Derived<S> {
         };
         let motions = self.bodies().map(|body| constant(motions[body]));
         let accelerations = self.bodies().map(|body| constant(accelerations[body]));
-        let path = |poses: &[Pose<Dual<S>>; MOST_BODIES],
-                    motions: &[Motion<Dual<S>>; MOST_BODIES]| {
+        for place in self.places() {
+            let poses = seeded(&here, place);
             let side = |side: usize| on_path(&poses[side], &motions[side], &accelerations[side]);
             let says: [Dual<Dual<Dual<S>>>; MOST_ROWS] = self.says(&[side(0), side(1), side(2)]);
-            says.map(|says| says.eps.eps.eps)
-        };
-        let still = here.map(|pose| lifted(&pose));
-        for (side, c) in self.places() {
-            let mut faster = motions;
-            let motion = &mut faster[side];
-            match c {
-                0 => motion.linear.x.eps = S::one(),
-                1 => motion.linear.y.eps = S::one(),
-                _ => motion.angular.eps = S::one(),
-            }
-            let by_coordinate = path(&seeded(&here, (side, c)), &motions);
-            let by_rate = path(&still, &faster);
-            let both = |row: usize| [by_coordinate[row], by_rate[row]];
-            entries((side, c), [both(0), both(1), both(2)]);
+            entries(place, says.map(|says| [says.eps.eps.eps, says.eps.re.eps + says.eps.re.eps]));
         }
     }
 }
