@@ -566,6 +566,30 @@ fn what_a_start_was_taken_from_stands_in_the_result_which_needs_no_file() {
 }
 
 #[test]
+fn a_case_that_starts_from_another_run_can_be_set_to_another_time_of_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let set = [EIGHTS, "run.sampling=uniform", "run.duration=1.220703125e-3"];
+    let one = run_into(folder, "cases/four-bar-b.toml", "one.h5", &set);
+    let at = format!("start.at={:?}", one.times().unwrap()[3]);
+    let text = std::fs::read_to_string(root().join("cases/four-bar-b.toml")).unwrap();
+    let path = folder.join("again.toml");
+    std::fs::write(&path, text.replace("[start]", "[start]\nfrom = \"one.h5\" #")).unwrap();
+    let start = |set: &[&str]| {
+        let set = set.iter().map(|change| change.parse().unwrap()).collect();
+        let case = told(Case::read(&path, &Changes { set, ideal: false }));
+        told(Simulation::new(&case)).mechanism().start().clone()
+    };
+    let (last, third) = (start(&[]), start(&[&at]));
+    assert_eq!(third, start(&["start.from=one.h5", &at]));
+    assert_ne!(third.q, last.q);
+    let [time, x] = ["time", "position_x.coupler"].map(|column| one.column(column).unwrap());
+    assert_eq!(time[3], one.times().unwrap()[3]);
+    let origin = x[x.len() - 1] - last.q[0];
+    assert!((third.q[0] + origin - x[3]).abs() < 1e-15);
+}
+
+#[test]
 fn courses_go_on_where_they_stood() {
     let text = std::fs::read_to_string(root().join("cases/slider-crank-ideal.toml")).unwrap();
     let speed = "joint     = \"O\"\nspeed_rpm = 5000.0\n";

@@ -26,6 +26,12 @@ impl Changes {
         set.value.as_str()
     }
 
+    /// Whether they set the time of a start from another run, and not that run.
+    pub(super) fn move_start(&self) -> bool {
+        let sets = |key: &str| self.set.iter().any(|set| set.key.keys() == ["start", key]);
+        sets("at") && !sets("from")
+    }
+
     /// Changes a document; comments and layout of the rest stay. Gives what could not be set.
     pub(super) fn apply(&self, document: &mut DocumentMut) -> Vec<Complaint> {
         let set = |change: &Override| {

@@ -113,6 +113,9 @@ impl Case {
 pub struct Template {
     path: PathBuf,
     text: String,
+    /// As it stands in the file, ...
+    written: DocumentMut,
+    /// ... and with what files that it names have.
     document: DocumentMut,
     /// The result file that the start is taken from.
     from: Option<PathBuf>,
@@ -139,6 +142,7 @@ impl Template {
     /// The text is not TOML.
     pub fn new(path: &Path, text: &str) -> Result<Self, Error> {
         let mut document = source::parse(path, text)?;
+        let written = document.clone();
         let source = Source::new(path, text)?;
         let taken = files::take_in(path, &mut document);
         let taken = taken.and_then(|any| Ok((any, start_from::take_in(path, &mut document)?)));
@@ -147,7 +151,7 @@ impl Template {
             Ok((_, from)) => (document.to_string(), from),
             Err(complaints) => return Err(source.reject(complaints)),
         };
-        Ok(Template { path: path.to_owned(), text, document, from, source })
+        Ok(Template { path: path.to_owned(), text, written, document, from, source })
     }
 
     /// The text as it stands in the file, with the numbers of files that belong to it.
@@ -163,7 +167,11 @@ impl Template {
         if changes.is_empty() {
             return Ok(self.text.clone());
         }
-        let mut document = self.document.clone();
+        // another time of the run that the file itself starts from is had by reading that again
+        let mut document = match changes.move_start() {
+            true => self.written.clone(),
+            false => self.document.clone(),
+        };
         let mut complaints = changes.apply(&mut document);
         complaints.extend(files::take_in(&self.path, &mut document).err().into_iter().flatten());
         let started = start_from::take_in(&self.path, &mut document);
