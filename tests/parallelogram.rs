@@ -9,6 +9,7 @@ use freeplay::case::Case;
 use freeplay::mechanism::Observation;
 use freeplay::run::{EventKind, Progress, Trajectory};
 use freeplay::simulate::Simulation;
+use proptest::prelude::*;
 use simulated::{Kept, case_of, root, simulate, words};
 use std::f64::consts::{PI, TAU};
 use std::ops::ControlFlow;
@@ -140,6 +141,93 @@ fn thrown_cranks_stay_on_their_branch() {
             let first = energy(&kept.samples[0]);
             let off = kept.largest(|sample| energy(sample) - first) / first.abs();
             assert!(off < 1e-9, "{engine}: {off:e}, {alike}");
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 16, failure_persistence: None, ..Default::default() })]
+
+    #[test]
+    fn parallelograms_of_any_size_stay_on_their_branch_under_any_load(
+        crank in 50_u32..300,
+        longer in 1.3_f64..4.0,
+        angle in 0.3_f64..2.8,
+        rate in -30.0_f64..30.0,
+        crossed in any::<bool>(),
+        stiffness in 5.0_f64..200.0,
+        masses in [0.1_f64..2.0, 0.1_f64..2.0, 0.1_f64..2.0],
+    ) {
+        // whole millimetres: lengths are alike to the last digit
+        let base = (f64::from(crank) * longer).round();
+        let (a, d) = (f64::from(crank) / 1e3, base / 1e3);
+        let other = move |angle: f64| match crossed {
+            true => -2.0 * ((d + a) / (d - a) * (angle / 2.0).tan()).atan(),
+            false => angle,
+        };
+        let second = other(angle);
+        let rise = a * (second.sin() - angle.sin());
+        let across = d + a * (second.cos() - angle.cos());
+        let [first, other_mass, platform] = masses;
+        let text = format!(
+            "[ground]
+points = {{ A0 = [0.0, 0.0], B0 = [{base}e-3, 0.0], S = [0.1, 0.2] }}
+[bodies.first]
+mass = {first}
+inertia = 1e-3
+points = {{ O = [-0.01, 0.0], P = [{}e-3, 0.0] }}
+[bodies.second]
+mass = {other_mass}
+inertia = 2e-3
+points = {{ O = [0.0, 0.0], P = [{crank}e-3, 0.0] }}
+[bodies.platform]
+mass = {platform}
+inertia = 0.01
+points = {{ A = [-0.1, 0.05], B = [{}e-3, 0.05], C = [0.01, 0.02] }}
+[joints.A0]
+kind = \"revolute\"
+between = [\"ground.A0\", \"first.O\"]
+[joints.B0]
+kind = \"revolute\"
+between = [\"ground.B0\", \"second.O\"]
+[joints.A]
+kind = \"revolute\"
+between = [\"first.P\", \"platform.A\"]
+[joints.B]
+kind = \"revolute\"
+between = [\"second.P\", \"platform.B\"]
+[loads.gravity]
+kind = \"gravity\"
+acceleration = [0.0, -9.81]
+[loads.spring]
+kind = \"spring\"
+between = [\"ground.S\", \"platform.C\"]
+stiffness = {stiffness}
+free_length = 0.1
+[start]
+first = {{ angle = {angle}, angular_velocity = {rate}, fixed = true }}
+second = {{ angle = {second} }}
+platform = {{ angle = {} }}
+[run]
+duration = 0.6
+sample_interval = 5e-3
+[solver]
+relative_tolerance = 1e-12
+absolute_tolerance = \"scaled\"
+",
+            crank - 10,
+            base - 100.0,
+            rise.atan2(across),
+        );
+        for engine in ["solver.engine=explicit", "solver.engine=ida"] {
+            let kept = simulate(&case_of(&text, &[engine]));
+            for sample in &kept.samples {
+                let (first, second) = (sample.bodies[0].angle, sample.bodies[1].angle);
+                let off = ((second - other(first)) / 2.0).sin().abs();
+                prop_assert!(off < 1e-9, "{engine}: {off:e} at {} s", sample.time);
+            }
+            let largest = kept.largest(|sample| sample.energy.kinetic);
+            prop_assert!(kept.largest(|sample| sample.energy.residual) < 1e-9 * largest);
         }
     }
 }

@@ -11,7 +11,7 @@ use freeplay::digits::{Scales, Sizes};
 use freeplay::mechanism::{Mechanism, Observation};
 use freeplay::record::{Dimension, ResultFile};
 use freeplay::scalar::{F256, Scalar};
-use freeplay::simulate::assemble;
+use freeplay::simulate::{Simulation, assemble};
 use simulated::{Kept, case, case_of, root, simulate, told};
 
 /// Every case file of the project.

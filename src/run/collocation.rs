@@ -175,7 +175,8 @@ mod tests {
 
     #[test]
     fn series_and_their_integrals_are_those_of_the_function() {
-        assert!(off::<f64>(16) < 1e-14, "{:e}", off::<f64>(16));
+        // of numbers up to sixteen
+        assert!(off::<f64>(16) < 1e-13, "{:e}", off::<f64>(16));
         assert!(off::<F256>(46) < 1e-66, "{:e}", off::<F256>(46));
     }
 }

@@ -46,13 +46,17 @@ pub(super) struct Passing<'a, S, E> {
     passage: Option<Box<Passage<S>>>,
     /// Turn (rad) from a singular position at which one is tried next.
     near: f64,
-    /// Time (s) of the next look, and steps since the last one.
-    next_look: f64,
+    /// Turn (rad) of what is fastest until the next look, and steps since the last one.
+    allowance: f64,
     unseen: u32,
     /// Time (s) at which a passage may begin, as far as the last look told.
     aim: Option<f64>,
     /// Length (s) of the last step.
     stride: f64,
+    /// Turn (rad) of what is fastest in it, ...
+    turned: f64,
+    /// ... and how fast that turned at its end (rad/s).
+    pace: f64,
     /// State where the last step began.
     before: Snapshot<S>,
     exact: Exact,
@@ -75,10 +79,12 @@ where
             watches,
             passage: None,
             near: NEAR,
-            next_look: f64::NEG_INFINITY,
+            allowance: 0.0,
             unseen: 0,
             aim: None,
             stride: 0.0,
+            turned: 0.0,
+            pace: 0.0,
             before,
             exact: Exact::default(),
         }
@@ -103,9 +109,8 @@ where
 
     /// Looks whether a singular position is near; returns the passage through it.
     fn look(&mut self, end: S) -> Option<Passage<S>> {
-        let time = self.engine.now().time.to_f64();
         self.unseen += 1;
-        if time + AHEAD * self.stride < self.next_look && self.unseen < LOOK_EVERY {
+        if AHEAD * self.turned < self.allowance && self.unseen < LOOK_EVERY {
             return None;
         }
         self.unseen = 0;
@@ -124,8 +129,9 @@ where
         let time = now.time.to_f64();
         let system = self.engine.system();
         let root = root(system, now.state())?;
-        let pace = pace(system, now);
-        self.next_look = time + (root / FASTEST - NEAR).max(0.0) / pace;
+        let pace = pace(system, speed(&now.v));
+        self.pace = pace;
+        self.allowance = (root / FASTEST - NEAR).max(0.0);
         if root > AWAY {
             self.near = NEAR;
             return None;
@@ -150,23 +156,31 @@ where
                 if self.near < NEAREST {
                     self.near = 0.0;
                 }
-                self.next_look = time;
+                self.allowance = 0.0;
                 None
             }
         }
     }
 
+    /// Takes note of how far the last step led, from a time (s) on.
+    fn count_turn(&mut self, from: f64) {
+        let (to, at_begin) = (self.engine.now().time.to_f64(), self.pace);
+        let speed = speed(&self.engine.now().v);
+        self.pace = pace(self.engine.system(), speed);
+        self.stride = to - from;
+        self.turned = self.stride * self.pace.max(at_begin);
+        self.allowance -= self.turned;
+    }
+
     /// Time (s) from the begin of the last step to a singular position that it led over, if passages are
     /// tried at all.
     fn passed_over(&mut self) -> Option<f64> {
-        let system = self.engine.system();
-        let pace = pace(system, &self.before);
-        if pace * self.stride <= STRIDE || self.near <= 0.0 {
+        if self.turned <= STRIDE || self.near <= 0.0 {
             return None;
         }
         let now = self.engine.now().clone();
         let system = self.engine.system();
-        let over = singular_between(system, &self.before, &now, pace);
+        let over = singular_between(system, &self.before, &now, self.turned / self.stride);
         if over.is_none() {
             let _ = system.evaluate(now.state());
         }
@@ -190,13 +204,16 @@ impl Exact {
     }
 }
 
-/// How fast what is fastest at a state turns (rad/s), as placed; a velocity counts over ten lengths of the
-/// mechanism.
-fn pace<S: Scalar>(system: &Mechanism<S>, now: &Snapshot<S>) -> f64 {
-    let far = 10.0 * system.length();
-    let bodies = now.v.as_chunks().0.iter();
-    let moved = bodies.map(|[x, y, _]| (x.abs().max(y.abs())).to_f64() / far);
-    moved.fold(system.fastest_turn(), f64::max).max(SLOWEST)
+/// How fast what is fastest turns (rad/s), the bodies as placed; their largest speed (m/s) counts over ten
+/// lengths of the mechanism.
+fn pace<S: Scalar>(system: &Mechanism<S>, speed: f64) -> f64 {
+    system.fastest_turn().max(speed / (10.0 * system.length())).max(SLOWEST)
+}
+
+/// The largest speed (m/s) among velocities, along an axis.
+fn speed<S: Scalar>(v: &[S]) -> f64 {
+    let bodies = v.as_chunks().0.iter();
+    bodies.map(|[x, y, _]| x.abs().max(y.abs()).to_f64()).fold(0.0, f64::max)
 }
 
 /// Root of the share that the constraints leave each other at a state.
@@ -219,7 +236,7 @@ pub(super) fn passage_near<S: Scalar>(
     ahead: bool,
 ) -> Option<Passage<S>> {
     let here = root(system, at.state()).filter(|root| *root < AWAY)?;
-    let pace = pace(system, at);
+    let pace = pace(system, speed(&at.v));
     let [_, rate] = course(system, at.state(), pace)?;
     let left = here / -rate;
     let turn = left.abs() * pace;
@@ -318,13 +335,13 @@ where
             let stop = self.aim.filter(|aim| *aim > before && *aim < soon);
             let stop = stop.map(S::from_f64).filter(|aim| *aim < end).unwrap_or(end);
             let advance = self.engine.step(stop)?;
-            self.stride = self.engine.now().time.to_f64() - before;
+            self.count_turn(before);
             let Some(left) = self.passed_over() else { return Ok(advance) };
             // back, and up to where a passage begins
             self.engine.restart(&self.before)?;
-            let turn = left * pace(self.engine.system(), &self.before);
+            let turn = left * self.pace;
             self.aim = Some(before + left * (1.0 - OVERSHOOT * self.near / turn).max(0.0));
-            (self.stride, self.next_look) = (left, f64::NEG_INFINITY);
+            (self.stride, self.turned, self.allowance) = (left, turn, 0.0);
         }
     }
 
