@@ -274,3 +274,28 @@ fn a_rod_with_play_hangs_on_a_parallelogram_that_passes() {
         }
     }
 }
+
+#[test]
+fn a_summary_does_not_call_forces_without_bound_known() {
+    let folder = tempfile::tempdir().unwrap();
+    let freeplay = |arguments: &[&str]| {
+        let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_freeplay"));
+        let output = command.args(arguments).current_dir(folder.path()).output().unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        String::from_utf8(output.stdout).unwrap()
+    };
+    for (name, text, torque) in
+        [("driven", driven(), Some("exact")), ("thrown", thrown("0.6", "0.0"), None)]
+    {
+        std::fs::write(folder.path().join(format!("{name}.toml")), text).unwrap();
+        let case = format!("{name}.toml");
+        freeplay(&["run", &case, "--no-tangent", "--quiet", "--set", "run.duration=0.15"]);
+        let told = freeplay(&["summary", &format!("{name}.h5")]);
+        let known = |of: &str| {
+            let line = told.lines().find(|line| line.trim_start().starts_with(of));
+            line.and_then(|line| line.split_whitespace().last()).map(str::to_owned)
+        };
+        assert_eq!(known("A ").as_deref(), Some("sample"), "{told}");
+        assert_eq!(known("drive_torque.motor").as_deref(), torque, "{told}");
+    }
+}

@@ -13,7 +13,7 @@ use crate::dae::Fault;
 use crate::mechanism::{Mechanism, Observation};
 use crate::model::Names;
 use crate::record::ResultFile;
-use crate::run::{Assembled, Contact, Event, Peak, Recorder, Revolution, TooFar};
+use crate::run::{Assembled, Contact, Event, EventKind, Peak, Recorder, Revolution, TooFar};
 use crate::simulate::Simulation;
 use std::convert::Infallible;
 use std::ops::ControlFlow;
@@ -107,6 +107,16 @@ impl RunExtremes {
         Ok(RunExtremes { names, quantities: quantities.into_iter().zip(tallies).collect() })
     }
 
+    /// Takes the samples too, and no more for known than they are: what a run found leaves out where it
+    /// passed singular positions.
+    fn know_no_more_than_samples(&mut self, file: &ResultFile, times: &[f64]) -> Result<(), Error> {
+        for (quantity, tally) in &mut self.quantities {
+            take_samples(tally, times, &values_of(file, *quantity)?);
+            tally.know_no_more_than_samples();
+        }
+        Ok(())
+    }
+
     /// Of a result file. `case` is the case that was run, where it is known.
     ///
     /// # Errors
@@ -132,7 +142,11 @@ impl RunExtremes {
             let tolerance = file.number("relative_tolerance").unwrap_or(f64::INFINITY);
             let all = Wanted::All;
             let whole = (&revolutions[..], 0.0);
-            return Ok(Self::of_revolutions(&names, whole, tolerance, parts, all));
+            let mut found = Self::of_revolutions(&names, whole, tolerance, parts, all);
+            if file.events()?.iter().any(|event| event.kind == EventKind::Singular) {
+                found.know_no_more_than_samples(file, &times)?;
+            }
+            return Ok(found);
         }
         let friction = has_friction(file)?;
         let mut quantities = Vec::new();
@@ -269,8 +283,8 @@ impl Scan<'_> {
         }
         let here = self.assembled.observe(time)?;
         let values: Vec<f64> = of.iter().map(|quantity| quantity.of(&here)).collect();
-        for (tally, value) in tallies.iter_mut().zip(&values) {
-            tally.take(Extreme::new(*value, time, Basis::Evaluated));
+        for ((tally, value), quantity) in tallies.iter_mut().zip(&values).zip(of) {
+            tally.take(Extreme::new(*value, time, self.basis(*quantity)));
         }
         self.last.push((time, values));
         if self.last.len() > 3 {
@@ -284,12 +298,20 @@ impl Scan<'_> {
                         let (time, value) = maximum([before.0, after.0], |time| {
                             Ok::<_, Fault>(sign * of[k].of(&self.assembled.observe(time)?))
                         })?;
-                        tally.take(Extreme::new(sign * value, time, Basis::Evaluated));
+                        tally.take(Extreme::new(sign * value, time, self.basis(of[k])));
                     }
                 }
             }
         }
         Ok(())
+    }
+
+    /// How a quantity is known where the mechanism was last evaluated.
+    fn basis(&self, quantity: Quantity) -> Basis {
+        match quantity {
+            Quantity::JointForce(_) if self.assembled.has_no_bound() => Basis::Sample,
+            _ => Basis::Evaluated,
+        }
     }
 }
 

@@ -118,6 +118,14 @@ impl Tally {
         if self.signed { &[1.0, -1.0] } else { &[1.0] }
     }
 
+    /// Has every extreme known as one of samples is.
+    pub(super) fn know_no_more_than_samples(&mut self) {
+        let all = std::iter::once(&mut self.total).chain(&mut self.revolutions);
+        for extreme in all.flat_map(|span| [&mut span.largest, &mut span.smallest]).flatten() {
+            (extreme.basis, extreme.uncertainty) = (Basis::Sample, None);
+        }
+    }
+
     /// Takes a candidate for an extreme value.
     pub fn take(&mut self, candidate: Extreme) {
         if !candidate.value.is_finite() || !candidate.time.is_finite() {

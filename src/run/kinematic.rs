@@ -235,6 +235,11 @@ impl<S: Scalar> Assembled<S> {
         &self.mechanism
     }
 
+    /// Whether it was last evaluated beside a singular position at which forces of joints have no bound.
+    pub fn has_no_bound(&self) -> bool {
+        self.walk.passage.as_ref().is_some_and(|passage| passage.has_pole)
+    }
+
     /// Everything at a time (s), to the rounding of the arithmetic; nearest is quickest, as the
     /// way there from the time asked for last is gone in strides. Works are not carried along:
     /// `drive_work` and `residual` of the energies mean nothing.

@@ -78,7 +78,8 @@ pub(super) struct Passage<S> {
     inner_rates: Series<S>,
     powers: Series<S>,
     multipliers: Series<S>,
-    has_pole: bool,
+    /// Whether multipliers have no bound.
+    pub has_pole: bool,
 }
 
 /// What the equations give at a node.
