@@ -123,7 +123,7 @@ impl<S: Scalar> Passage<S> {
             let finer = Self::over(system, from, span, more, HELD)?;
             let off = found.off(&finer, system);
             if off <= allowed {
-                return Some(finer);
+                return finer.is_quiet(system).then_some(finer);
             }
             if !(off < 0.5 * last) || finer.count > MOST {
                 return None;
@@ -236,9 +236,17 @@ impl<S: Scalar> Passage<S> {
         passage.place(S::one(), &Place::new(count, S::one()), &mut to);
         system.project(to.time, &mut to.q, &mut to.v).ok()?;
         passage.to = to;
-        let quiet = states.iter().map(|(_, state)| state).chain([&passage.to]);
-        let quiet = quiet.into_iter().all(|state| nothing_happens(system, state));
-        quiet.then_some(passage)
+        Some(passage)
+    }
+
+    /// Whether no event passes at the nodes, nor at the end.
+    fn is_quiet(&self, system: &mut Mechanism<S>) -> bool {
+        let mut at = self.from.clone();
+        let nodes = Nodes::new(self.count).at;
+        nodes.into_iter().all(|x| {
+            self.place(x, &Place::new(self.count, x), &mut at);
+            nothing_happens(system, &at)
+        }) && nothing_happens(system, &self.to)
     }
 
     /// Finds where the constraints depend on each other, from their shares at the nodes; `None` where those
