@@ -230,3 +230,40 @@ friction = { law = \"tanh\", coefficient = 0.1, transition = 1e-3 }
         assert_stops(&text, "singular position", flat);
     }
 }
+
+#[test]
+fn no_tolerance_is_so_loose_that_a_chain_is_led_over_a_way_that_is_not_clear() {
+    let hair = "R = [0.50000000000000000000001, 0.0]";
+    let text = four_bars(1).replacen("R = [0.5, 0.0]", hair, 1);
+    for engine in ["explicit", "ida"] {
+        for tolerance in ["1e-3", "1e-4", "1e-5", "1e-6", "1e-7", "1e-8"] {
+            let engine = format!("solver.engine={engine}");
+            let tolerance = format!("solver.relative_tolerance={tolerance}");
+            let case = case_of(&text, &[&engine, &tolerance, "run.duration=1.0"]);
+            let mut go_on = |_: &Progress| ControlFlow::Continue(());
+            let (_, ran) =
+                Simulation::new(&case).unwrap().run(&mut Trajectory::default(), &mut go_on);
+            let error = words(&ran.unwrap_err());
+            assert!(error.contains("singular position"), "{engine}, {tolerance}: {error}");
+        }
+    }
+}
+
+#[test]
+fn a_chain_that_misses_its_flat_position_by_a_hair_goes_over_to_the_other_branch() {
+    // what doubles can tell: a nanometre, as 71 digits have it
+    let text = four_bars(1).replacen("R = [0.5, 0.0]", "R = [0.500000001, 0.0]", 1);
+    let at_end = |set: &[&str]| {
+        let kept = simulate(&case_of(&text, &[set, &["run.duration=1.0"]].concat()));
+        assert!(kept.events.is_empty());
+        kept.last().bodies.iter().map(|body| body.angle).collect::<Vec<_>>()
+    };
+    let octuple = ["solver.engine=explicit", "solver.precision=71"];
+    let truth = at_end(&[&octuple[..], &["solver.reference_tolerance=1e-40"]].concat());
+    for engine in ["solver.engine=explicit", "solver.engine=ida"] {
+        let found = at_end(&[engine, "solver.relative_tolerance=1e-9"]);
+        for (found, truth) in found.iter().zip(&truth) {
+            assert!((found - truth).abs() < 1e-6, "{engine}: {found} {truth}");
+        }
+    }
+}

@@ -360,6 +360,12 @@ where
                 return Err(Error::Contradiction(Contradiction::TimeGoesBack { from, to }));
             }
             self.progress.steps += 1;
+            if self.engine.refuses() {
+                let now = self.engine.now().clone();
+                let weakest = self.engine.system().weakest_joint(now.state());
+                let (owner, left) = weakest.unwrap_or_default();
+                return Err(self.singular_position(owner, left, None));
+            }
             self.arrive();
             if S::EPSILON < f64::EPSILON {
                 self.check_modes()?;

@@ -16,8 +16,12 @@ const NEAR: f64 = 0.12;
 const NEAREST: f64 = 1e-5;
 /// Root of the share that the constraints leave each other from which on no singular position is near.
 const AWAY: f64 = 0.5;
-/// Turn (rad) of the fastest body over which the rate of that root is taken.
+/// Turn (rad) of the fastest body over which the rate of that root is taken, at the most; ...
 const TURN: f64 = 1e-4;
+/// ... over the root itself; ...
+const SHARE: f64 = 0.1;
+/// ... and at least.
+const LEAST: f64 = 1e-9;
 /// The root changes by no more than this in a turn of the fastest body by 1 rad.
 const FASTEST: f64 = 2.5;
 /// What turns no faster (rad/s) stands still.
@@ -59,6 +63,8 @@ pub(super) struct Passing<'a, S, E> {
     pace: f64,
     /// State where the last step began.
     before: Snapshot<S>,
+    /// Whether the engine would step over a singular position through which no way is clear.
+    refuses: bool,
     exact: Exact,
 }
 
@@ -86,6 +92,7 @@ where
             turned: 0.0,
             pace: 0.0,
             before,
+            refuses: false,
             exact: Exact::default(),
         }
     }
@@ -93,6 +100,12 @@ where
     /// The passage that the last step was, if it was one.
     pub fn passage(&self) -> Option<&Passage<S>> {
         self.passage.as_deref()
+    }
+
+    /// Whether the engine can only go on over a singular position through which no way is clear; it stands
+    /// before it.
+    pub fn refuses(&self) -> bool {
+        self.refuses
     }
 
     /// Has the system stand where the passage that the last step was is at a time (s), the state in a
@@ -172,10 +185,10 @@ where
         self.allowance -= self.turned;
     }
 
-    /// Time (s) from the begin of the last step to a singular position that it led over, if passages are
-    /// tried at all.
+    /// Time (s) from the begin of the last step to a singular position that it led over. Short steps are not
+    /// looked into, unless a passage was tried and not found.
     fn passed_over(&mut self) -> Option<f64> {
-        if self.turned <= STRIDE || self.near <= 0.0 {
+        if self.turned <= STRIDE && self.near >= NEAR {
             return None;
         }
         let now = self.engine.now().clone();
@@ -252,7 +265,8 @@ fn course<S: Scalar>(
     pace: f64,
 ) -> Option<[f64; 2]> {
     let here = root(system, state)?;
-    let span = TURN / pace;
+    // not over the position itself
+    let span = TURN.min(SHARE * here).max(LEAST) / pace;
     let later = S::from_f64(span);
     let q: Vec<S> = state.q.iter().zip(state.v).map(|(q, v)| *q + later * *v).collect();
     let beside = root(system, State { time: state.time + later, q: &q, ..state })?;
@@ -339,6 +353,10 @@ where
             let Some(left) = self.passed_over() else { return Ok(advance) };
             // back, and up to where a passage begins
             self.engine.restart(&self.before)?;
+            self.refuses = self.near <= 0.0;
+            if self.refuses {
+                return Ok(Advance::Stepped);
+            }
             let turn = left * self.pace;
             self.aim = Some(before + left * (1.0 - OVERSHOOT * self.near / turn).max(0.0));
             (self.stride, self.turned, self.allowance) = (left, turn, 0.0);
