@@ -279,7 +279,7 @@ pub enum Advance {
 }
 
 /// q, v, z and the integrals at one time.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, PartialEq, Serialize, Deserialize)]
 #[serde(bound(serialize = "S: Scalar", deserialize = "S: Scalar"))]
 pub struct Snapshot<S> {
     /// Time (s).
@@ -297,6 +297,27 @@ pub struct Snapshot<S> {
     /// Integrals since the run began (J).
     #[serde(with = "bits::list")]
     pub integrals: Vec<S>,
+}
+
+impl<S: Clone> Clone for Snapshot<S> {
+    fn clone(&self) -> Self {
+        Snapshot {
+            time: self.time.clone(),
+            q: self.q.clone(),
+            v: self.v.clone(),
+            z: self.z.clone(),
+            integrals: self.integrals.clone(),
+        }
+    }
+
+    /// Into the space that is there, which a derived one would give back first.
+    fn clone_from(&mut self, source: &Self) {
+        self.time.clone_from(&source.time);
+        self.q.clone_from(&source.q);
+        self.v.clone_from(&source.v);
+        self.z.clone_from(&source.z);
+        self.integrals.clone_from(&source.integrals);
+    }
 }
 
 impl<S: Scalar> Snapshot<S> {
