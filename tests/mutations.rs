@@ -143,8 +143,32 @@ fn check(text: &str, changes: &Changes) -> Result<(), String> {
     Ok(())
 }
 
-/// Tries a text; if it fails, says where it is kept.
-fn try_case(text: &str, changes: &Changes) -> bool {
+/// What fell, each with where it is kept.
+#[derive(Default)]
+struct Falls(Vec<String>);
+
+/// More are not looked for.
+const MOST_FALLS: usize = 20;
+
+impl Falls {
+    /// Keeps what falls with these words.
+    fn keep(&mut self, wrong: &str, bytes: &[u8], ending: &str) {
+        let thread = std::thread::current();
+        let test = thread.name().unwrap_or_default();
+        let kept = format!("freeplay-{test}-{}.{ending}", self.0.len());
+        let kept = std::env::temp_dir().join(kept);
+        std::fs::write(&kept, bytes).unwrap();
+        self.0.push(format!("{wrong}: {}", kept.display()));
+        assert!(self.0.len() < MOST_FALLS, "{}", self.0.join("\n"));
+    }
+
+    fn tell(&self) {
+        assert!(self.0.is_empty(), "{}", self.0.join("\n"));
+    }
+}
+
+/// Tries a text, and tells whether it is sound.
+fn try_case(text: &str, changes: &Changes, falls: &mut Falls) -> bool {
     let begun = processor_time();
     let told = std::panic::catch_unwind(|| check(text, changes));
     let took = processor_time().saturating_sub(begun);
@@ -155,9 +179,7 @@ fn try_case(text: &str, changes: &Changes) -> bool {
         Ok(_) => None,
     };
     if let Some(wrong) = wrong {
-        let kept = std::env::temp_dir().join("freeplay-mutation.toml");
-        std::fs::write(&kept, text).unwrap();
-        panic!("{wrong}, with {changes:?}: {}", kept.display());
+        falls.keep(&format!("{wrong}, with {changes:?}"), text.as_bytes(), "toml");
     }
     matches!(told, Ok(Ok(())))
 }
@@ -172,8 +194,9 @@ fn texts() -> Vec<String> {
 fn no_case_file_is_too_much() {
     // changes of slow ones would take the time of all others
     let slow = files("tests/mutations/slow", "toml");
+    let mut falls = Falls::default();
     for path in files("tests/mutations", "toml").into_iter().chain(slow) {
-        try_case(&std::fs::read_to_string(path).unwrap(), &Changes::default());
+        try_case(&std::fs::read_to_string(path).unwrap(), &Changes::default(), &mut falls);
     }
     let texts = texts();
     let mut random = fastrand::Rng::with_seed(16);
@@ -183,15 +206,16 @@ fn no_case_file_is_too_much() {
         for _ in 0..random.u8(1..4) {
             text = mutate(&text, &mut random);
         }
-        sound += u64::from(try_case(&text, &Changes::default()));
+        sound += u64::from(try_case(&text, &Changes::default(), &mut falls));
     }
+    falls.tell();
     // both kinds are tried
     assert!(sound > all / 20 && sound < all, "{sound} of {all}");
 }
 
 #[test]
 fn no_change_from_the_command_line_is_too_much() {
-    let texts = texts();
+    let (texts, mut falls) = (texts(), Falls::default());
     let mut random = fastrand::Rng::with_seed(17);
     for _ in 0..mutations(4500) {
         let text = &texts[random.usize(..texts.len())];
@@ -205,8 +229,10 @@ fn no_change_from_the_command_line_is_too_much() {
         let value = VALUES[random.usize(..VALUES.len())];
         let written = mutate(&format!("{table}{dot}{key}={value}"), &mut random);
         let Ok(change) = written.trim_end().parse::<Override>() else { continue };
-        try_case(text, &Changes { set: vec![change], ideal: random.bool() });
+        let changes = Changes { set: vec![change], ideal: random.bool() };
+        try_case(text, &changes, &mut falls);
     }
+    falls.tell();
 }
 
 /// Reads all that there is in a file.
@@ -225,7 +251,7 @@ fn no_result_file_is_too_much() {
     let run = Run::of("four-bar-b", &set);
     let whole = std::fs::read(&run.path).unwrap();
     assert_eq!(read(&run.path), Ok(()));
-    let path = run.beside("mutation.h5");
+    let (path, mut falls) = (run.beside("mutation.h5"), Falls::default());
     let mut random = fastrand::Rng::with_seed(18);
     let (mut refused, all) = (0, mutations(15_000) / 10);
     for _ in 0..all {
@@ -256,11 +282,10 @@ fn no_result_file_is_too_much() {
         let told = std::panic::catch_unwind(|| read(&path));
         let took = processor_time().saturating_sub(begun);
         if told.is_err() || took > LONGEST {
-            let kept = std::env::temp_dir().join("freeplay-mutation.h5");
-            std::fs::write(&kept, &bytes).unwrap();
-            panic!("it panics or takes {took:?}: {}", kept.display());
+            falls.keep(&format!("it panics or takes {took:?}"), &bytes, "h5");
         }
         refused += u64::from(!matches!(told, Ok(Ok(()))));
     }
+    falls.tell();
     assert!(refused > all / 10, "{refused} of {all}");
 }

@@ -33,7 +33,11 @@ impl<S: Scalar> Nodes<S> {
             let mut x = S::from_f64(guess.cos());
             for _ in 0..ITERATIONS {
                 let [value, slope] = with_slope(count, x);
-                x -= value / slope;
+                let step = value / slope;
+                x -= step;
+                if step.abs().to_f64() <= S::EPSILON {
+                    break;
+                }
             }
             let [_, slope] = with_slope(count, x);
             let weight = S::from_f64(2.0) / ((S::one() - x * x) * slope * slope);
@@ -46,7 +50,8 @@ impl<S: Scalar> Nodes<S> {
 
 /// P_0 … P_{count−1} at x.
 fn legendre<S: Scalar>(count: usize, x: S) -> Vec<S> {
-    let mut all = vec![S::one(), x];
+    let mut all = Vec::with_capacity(count.max(2));
+    all.extend([S::one(), x]);
     for k in 2..count {
         let number = |n: usize| S::from_f64(n as f64);
         all.push((number(2 * k - 1) * x * all[k - 1] - number(k - 1) * all[k - 2]) / number(k));
@@ -57,9 +62,13 @@ fn legendre<S: Scalar>(count: usize, x: S) -> Vec<S> {
 
 /// P_n and its slope at x, not at an end.
 fn with_slope<S: Scalar>(n: usize, x: S) -> [S; 2] {
-    let all = legendre(n + 1, x);
-    let slope = S::from_f64(n as f64) * (x * all[n] - all[n - 1]) / (x * x - S::one());
-    [all[n], slope]
+    let number = |n: usize| S::from_f64(n as f64);
+    let (mut before, mut value) = (S::one(), x);
+    for k in 2..=n {
+        let next = (number(2 * k - 1) * x * value - number(k - 1) * before) / number(k);
+        (before, value) = (value, next);
+    }
+    [value, number(n) * (x * value - before) / (x * x - S::one())]
 }
 
 /// What stands before the coefficients of a series at one place: P_k, or their integrals from −1.

@@ -315,16 +315,19 @@ impl<S: Scalar> Walk<S> {
             self.now.clone_from(if time < first.time { first } else { last });
             self.passage = None;
         }
-        if time != self.now.time && self.finds_passage(mechanism, time) {
+        let mut nearest = f64::INFINITY;
+        if time != self.now.time && self.finds_passage(mechanism, time, &mut nearest) {
             return self.reach(mechanism, time);
         }
+        let mut looked = self.now.time;
         let mut to = time;
         for _ in 0..MOST_PARTS {
             match stride(mechanism, &mut self.now, to) {
                 Ok(true) if to == time => return Ok(()),
                 Ok(true) => to = time,
                 fell => {
-                    if self.finds_passage(mechanism, time) {
+                    let moved = std::mem::replace(&mut looked, self.now.time) != self.now.time;
+                    if moved && self.finds_passage(mechanism, time, &mut nearest) {
                         return self.reach(mechanism, time);
                     }
                     let half = self.now.time + (to - self.now.time) * S::ratio(1, 2);
@@ -340,9 +343,9 @@ impl<S: Scalar> Walk<S> {
     }
 
     /// Enters the passage through a singular position that is near on the way to a time (s), if there is
-    /// one.
-    fn finds_passage(&mut self, mechanism: &mut Mechanism<S>, time: S) -> bool {
-        let found = passage_near(mechanism, &self.now, time > self.now.time);
+    /// one, and it is nearer than where none was found before.
+    fn finds_passage(&mut self, mechanism: &mut Mechanism<S>, time: S, nearest: &mut f64) -> bool {
+        let found = passage_near(mechanism, &self.now, time > self.now.time, nearest);
         let found = found.filter(|passage| self.exact.agrees(mechanism, passage));
         if let Some(passage) = &found {
             self.passed = Some((passage.time(), passage.owner));

@@ -241,21 +241,25 @@ fn left<S: Scalar>(system: &mut Mechanism<S>, at: &Snapshot<S>, pace: f64) -> Op
     (rate < 0.0).then_some(root / -rate)
 }
 
-/// The passage through a singular position that is near to a state, ahead or behind; `None` where none is
-/// near or the way is not clear. Leaves the system elsewhere.
+/// The passage through a singular position that is near to a state, ahead or behind, by a turn of what is
+/// fastest of no more than `nearest` (rad), which is halved where the way is not clear; `None` where none is
+/// that near or the way is not clear. Leaves the system elsewhere.
 pub(super) fn passage_near<S: Scalar>(
     system: &mut Mechanism<S>,
     at: &Snapshot<S>,
     ahead: bool,
+    nearest: &mut f64,
 ) -> Option<Passage<S>> {
     let here = root(system, at.state()).filter(|root| *root < AWAY)?;
     let pace = pace(system, speed(&at.v));
     let [_, rate] = course(system, at.state(), pace)?;
     let left = here / -rate;
     let turn = left.abs() * pace;
-    let near = (left > 0.0) == ahead && turn <= NEAR;
-    let found = || Passage::find(system, at, S::from_f64(2.0 * left), S::EPSILON, NEAR / turn);
-    near.then(found).flatten()
+    if (left > 0.0) != ahead || !(turn <= nearest.min(NEAR)) {
+        return None;
+    }
+    *nearest = 0.5 * turn;
+    Passage::find(system, at, S::from_f64(2.0 * left), S::EPSILON, NEAR / turn)
 }
 
 /// That root at a state, where what is fastest turns so fast (rad/s), and its rate (1/s).
