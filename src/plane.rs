@@ -1,6 +1,6 @@
 //! Vectors, poses and motions in the plane.
 
-use crate::scalar::Scalar;
+use crate::scalar::{Lift, Scalar};
 use std::ops::{Add, AddAssign, Mul, Neg, Sub, SubAssign};
 
 /// A vector in the plane; in the fixed frame unless its owner says otherwise.
@@ -127,6 +127,16 @@ impl<S: Scalar> Pose<S> {
     #[inline(always)]
     pub fn rotate(&self, v: Vector<S>) -> Vector<S> {
         Vector::new(self.cos * v.x - self.sin * v.y, self.sin * v.x + self.cos * v.y)
+    }
+
+    /// The same of a vector of parameters, in a poorer arithmetic.
+    #[inline(always)]
+    pub fn carry<P: Scalar>(&self, v: Vector<P>) -> Vector<S>
+    where
+        S: Lift<P>,
+    {
+        let (cos, sin) = (self.cos, self.sin);
+        Vector::new(cos.times(v.x) - sin.times(v.y), sin.times(v.x) + cos.times(v.y))
     }
 }
 

@@ -157,7 +157,9 @@ impl<S: Scalar> Constraint<S> {
             Constraint::Drive(drive) => add([drive.i, drive.j], drive.wrenches(lambda[0])),
             Constraint::Derived(joint) => {
                 for (side, body) in joint.bodies().into_iter().enumerate() {
-                    wrenches[body] += wrench_on(side, slopes, lambda);
+                    if body != GROUND {
+                        wrenches[body] += wrench_on(side, slopes, lambda);
+                    }
                 }
             }
         }
@@ -230,10 +232,14 @@ impl<S: Scalar> Constraint<S> {
 }
 
 /// −Φ_qᵀ λ on one body.
+#[inline(always)]
 fn wrench_on<S: Scalar>(side: usize, slopes: &[Blocks<S>], lambda: &[S]) -> Wrench<S> {
-    let sum = |c: usize| {
-        let terms = slopes.iter().zip(lambda).map(|(row, lambda)| row[side][c] * *lambda);
-        -terms.fold(S::zero(), |sum, term| sum + term)
-    };
-    Wrench { force: Vector::new(sum(0), sum(1)), moment: sum(2) }
+    let mut on = Wrench::none();
+    for (row, lambda) in slopes.iter().zip(lambda) {
+        let [x, y, angle] = row[side];
+        on.force.x += -(x * *lambda);
+        on.force.y += -(y * *lambda);
+        on.moment += -(angle * *lambda);
+    }
+    on
 }

@@ -1,6 +1,6 @@
 //! What follows from Φ, by dual numbers: Φ_q, Φ̇, Φ̈ and their slopes.
 //!
-//! Along a path q(t) with velocity v and acceleration a, in numbers with ε² = η² = 0,
+//! Φ_q comes from one evaluation, in numbers with a derivative by each coordinate that can change. Along a path q(t) with velocity v and acceleration a, in numbers with ε² = η² = 0,
 //! ```text
 //! Φ(q + v ε + v η + a ε η) = Φ + Φ̇ ε + Φ̇ η + Φ̈ ε η
 //! ```
@@ -72,6 +72,7 @@ impl<S: Scalar> Derived<S> {
         }
     }
 
+    #[inline(always)]
     fn says<T: Lift<S>>(&self, poses: &[Pose<T>; MOST_BODIES]) -> [T; MOST_ROWS] {
         match &self.says {
             Says::Joint(joint) => joint.error(poses),
@@ -124,7 +125,12 @@ impl<S: Scalar> Derived<S> {
         error: &mut [S],
     ) {
         let [.., prescribed] = self.prescribed(time);
-        let path = self.bodies().map(|b| on_path(&poses[b], &motions[b], &accelerations[b]));
+        let mut path = [Pose::fixed(); MOST_BODIES];
+        for (body, pose) in self.bodies().into_iter().zip(&mut path) {
+            if body != GROUND {
+                put_on_path(&poses[body], &motions[body], &accelerations[body], pose);
+            }
+        }
         let says: [Dual<Dual<S>>; MOST_ROWS] = self.says(&path);
         let says = says.into_iter().take(self.rows());
         error.iter_mut().zip(says).for_each(|(error, says)| *error = says.eps.eps - prescribed);
@@ -132,12 +138,41 @@ impl<S: Scalar> Derived<S> {
 
     /// Φ_q, row by row.
     pub fn slopes(&self, poses: &[Pose<S>], slopes: &mut [Blocks<S>]) {
-        let here = self.poses(poses);
         slopes.iter_mut().for_each(|row| *row = [[S::zero(); 3]; MOST_BODIES]);
-        for (side, c) in self.places() {
-            let says: [Dual<S>; MOST_ROWS] = self.says(&seeded(&here, (side, c)));
-            for (row, says) in slopes.iter_mut().zip(says) {
-                row[side][c] = says.eps;
+        let moving = self.bodies().into_iter().filter(|body| *body != GROUND).count();
+        match moving {
+            1 => self.slopes_by::<3>(poses, slopes),
+            2 => self.slopes_by::<6>(poses, slopes),
+            _ => self.slopes_by::<9>(poses, slopes),
+        }
+    }
+
+    /// Φ_q where N coordinates can change.
+    #[inline(always)]
+    fn slopes_by<const N: usize>(&self, poses: &[Pose<S>], slopes: &mut [Blocks<S>]) {
+        // poses are large: filled where they stand, they are never copied
+        let mut seeded = [Pose::<Dual<S, [S; N]>>::fixed(); MOST_BODIES];
+        let mut places = [N; MOST_BODIES];
+        let mut first = 0;
+        for ((body, pose), place) in self.bodies().into_iter().zip(&mut seeded).zip(&mut places) {
+            if body == GROUND {
+                continue;
+            }
+            lift_into(&poses[body], pose);
+            pose.position.x.eps[first] = S::one();
+            pose.position.y.eps[first + 1] = S::one();
+            pose.angle.eps[first + 2] = S::one();
+            pose.cos.eps[first + 2] = -poses[body].sin;
+            pose.sin.eps[first + 2] = poses[body].cos;
+            *place = first;
+            first += 3;
+        }
+        let says = self.says(&seeded);
+        for (row, says) in slopes.iter_mut().zip(&says) {
+            for (block, first) in row.iter_mut().zip(places) {
+                if first < N {
+                    block.copy_from_slice(&says.eps[first..first + 3]);
+                }
             }
         }
     }
@@ -182,22 +217,31 @@ impl<S: Scalar> Derived<S> {
         let accelerations = self.bodies().map(|body| constant(accelerations[body]));
         for place in self.places() {
             let poses = seeded(&here, place);
-            let side = |side: usize| on_path(&poses[side], &motions[side], &accelerations[side]);
-            let says: [Dual<Dual<Dual<S>>>; MOST_ROWS] = self.says(&[side(0), side(1), side(2)]);
+            let mut path = [Pose::fixed(); MOST_BODIES];
+            for (side, pose) in path.iter_mut().enumerate() {
+                put_on_path(&poses[side], &motions[side], &accelerations[side], pose);
+            }
+            let says: [Dual<Dual<Dual<S>>>; MOST_ROWS] = self.says(&path);
             entries(place, says.map(|says| [says.eps.eps.eps, says.eps.re.eps + says.eps.re.eps]));
         }
     }
 }
 
+/// Puts a pose into one whose derivatives are zero.
+#[inline(always)]
+fn lift_into<T: Scalar, E>(from: &Pose<T>, pose: &mut Pose<Dual<T, E>>) {
+    pose.position.x.re = from.position.x;
+    pose.position.y.re = from.position.y;
+    pose.angle.re = from.angle;
+    pose.cos.re = from.cos;
+    pose.sin.re = from.sin;
+}
+
 /// A pose that stays.
 fn lifted<T: Scalar>(pose: &Pose<T>) -> Pose<Dual<T>> {
-    let constant = Dual::from_re;
-    Pose {
-        position: Vector::new(constant(pose.position.x), constant(pose.position.y)),
-        angle: constant(pose.angle),
-        cos: constant(pose.cos),
-        sin: constant(pose.sin),
-    }
+    let mut stays = Pose::fixed();
+    lift_into(pose, &mut stays);
+    stays
 }
 
 /// Poses with the derivative by one of their coordinates.
@@ -229,20 +273,24 @@ fn moving<T: Scalar>(pose: &Pose<T>, motion: &Motion<T>) -> Pose<Dual<T>> {
     }
 }
 
-/// A pose with two derivatives by time.
-fn on_path<T: Scalar>(
-    pose: &Pose<T>,
+/// Puts a pose with two derivatives by time into another.
+#[inline(always)]
+fn put_on_path<T: Scalar>(
+    from: &Pose<T>,
     motion: &Motion<T>,
     acceleration: &Motion<T>,
-) -> Pose<Dual<Dual<T>>> {
-    let second = |x: T, v: T, a: T| Dual::new(Dual::new(x, v), Dual::new(v, a));
-    let (at, v, a) = (pose.position, motion.linear, acceleration.linear);
+    pose: &mut Pose<Dual<Dual<T>>>,
+) {
+    let put = |number: &mut Dual<Dual<T>>, x: T, v: T, a: T| {
+        (number.re.re, number.re.eps) = (x, v);
+        (number.eps.re, number.eps.eps) = (v, a);
+    };
+    let (at, v, a) = (from.position, motion.linear, acceleration.linear);
     let (rate, bend) = (motion.angular, acceleration.angular);
-    let (cos, sin, square) = (pose.cos, pose.sin, rate * rate);
-    Pose {
-        position: Vector::new(second(at.x, v.x, a.x), second(at.y, v.y, a.y)),
-        angle: second(pose.angle, rate, bend),
-        cos: second(cos, -sin * rate, -sin * bend - cos * square),
-        sin: second(sin, cos * rate, cos * bend - sin * square),
-    }
+    let (cos, sin, square) = (from.cos, from.sin, rate * rate);
+    put(&mut pose.position.x, at.x, v.x, a.x);
+    put(&mut pose.position.y, at.y, v.y, a.y);
+    put(&mut pose.angle, from.angle, rate, bend);
+    put(&mut pose.cos, cos, -sin * rate, -sin * bend - cos * square);
+    put(&mut pose.sin, sin, cos * rate, cos * bend - sin * square);
 }

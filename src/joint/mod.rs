@@ -99,17 +99,11 @@ pub trait Holonomic<S: Scalar>: Copy {
     fn error<T: Lift<S>>(&self, poses: &[Pose<T>; MOST_BODIES]) -> [T; MOST_ROWS];
 }
 
-/// A vector of parameters in a richer arithmetic.
-#[inline(always)]
-fn lift<S: Scalar, T: Lift<S>>(v: Vector<S>) -> Vector<T> {
-    Vector::new(T::lift(v.x), T::lift(v.y))
-}
-
 /// From the first point to the second (m), fixed frame.
 #[inline(always)]
 fn between<S: Scalar, T: Lift<S>>(pair: &Pair<S>, poses: &[Pose<T>; MOST_BODIES]) -> Vector<T> {
     let [i, j, _] = poses;
-    j.position + j.rotate(lift(pair.s_j)) - i.position - i.rotate(lift(pair.s_i))
+    j.position + j.carry(pair.s_j) - i.position - i.carry(pair.s_i)
 }
 
 /// Along a direction that a case gives, of length one.

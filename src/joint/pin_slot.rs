@@ -4,7 +4,7 @@
 //! ```
 
 use super::prismatic::AXIS;
-use super::{BETWEEN, Ends, Holonomic, MOST_BODIES, MOST_ROWS, Pair, between, lift, unit};
+use super::{BETWEEN, Ends, Holonomic, MOST_BODIES, MOST_ROWS, Pair, between, unit};
 use crate::parameter::{Kind, Values};
 use crate::plane::{Pose, Vector};
 use crate::scalar::{Lift, Scalar};
@@ -43,7 +43,7 @@ impl<S: Scalar> Holonomic<S> for PinSlot<S> {
     }
 
     fn error<T: Lift<S>>(&self, poses: &[Pose<T>; MOST_BODIES]) -> [T; MOST_ROWS] {
-        let axis = poses[0].rotate(lift(self.axis));
+        let axis = poses[0].carry(self.axis);
         [axis.cross(between(&self.pair, poses)), T::zero(), T::zero()]
     }
 }

@@ -4,7 +4,7 @@
 //! Φ = [u × d,  θ_j − θ_i − α] = 0   (m, rad);   travel u · d
 //! ```
 
-use super::{BETWEEN, Ends, Holonomic, MOST_BODIES, MOST_ROWS, Pair, between, lift, unit};
+use super::{BETWEEN, Ends, Holonomic, MOST_BODIES, MOST_ROWS, Pair, between, unit};
 use crate::parameter::{Key, Kind, Range, Takes, Values};
 use crate::plane::{Motion, Pose, Vector, Wrench};
 use crate::scalar::{Lift, Scalar};
@@ -41,20 +41,20 @@ impl<S: Scalar> Prismatic<S> {
     /// Rate (m/s) of the travel on the line: how fast the second body slides on the first.
     pub fn rate<T: Lift<S>>(&self, poses: &[Pose<T>; 2], motions: &[Motion<T>; 2]) -> T {
         let [arm_i, arm_j] = self.arms(poses);
-        let along = poses[0].rotate(lift(self.axis));
+        let along = poses[0].carry(self.axis);
         along.dot(motions[1].at(arm_j) - motions[0].at(arm_i))
     }
 
     /// What a force (N) along the axis puts on first and second body, at the second's point.
     pub fn pushed<T: Lift<S>>(&self, force: T, poses: &[Pose<T>; 2]) -> [Wrench<T>; 2] {
         let [arm_i, arm_j] = self.arms(poses);
-        let force = poses[0].rotate(lift(self.axis)) * force;
+        let force = poses[0].carry(self.axis) * force;
         [Wrench::at(arm_i, -force), Wrench::at(arm_j, force)]
     }
 
     /// From both mass centres to the second point (m).
     fn arms<T: Lift<S>>(&self, poses: &[Pose<T>; 2]) -> [Vector<T>; 2] {
-        let arm = poses[1].rotate(lift(self.pair.s_j));
+        let arm = poses[1].carry(self.pair.s_j);
         [poses[1].position + arm - poses[0].position, arm]
     }
 
@@ -71,7 +71,7 @@ impl<S: Scalar> Prismatic<S> {
 
     /// Travel u · d (m) of the second point along the line, from the first.
     pub fn travel<T: Lift<S>>(&self, poses: &[Pose<T>; MOST_BODIES]) -> T {
-        poses[0].rotate(lift(self.axis)).dot(between(&self.pair, poses))
+        poses[0].carry(self.axis).dot(between(&self.pair, poses))
     }
 }
 
@@ -86,7 +86,7 @@ impl<S: Scalar> Holonomic<S> for Prismatic<S> {
 
     fn error<T: Lift<S>>(&self, poses: &[Pose<T>; MOST_BODIES]) -> [T; MOST_ROWS] {
         let [i, j, _] = poses;
-        let across = i.rotate(lift(self.axis)).cross(between(&self.pair, poses));
+        let across = i.carry(self.axis).cross(between(&self.pair, poses));
         [across, j.angle - i.angle - T::lift(self.angle), T::zero()]
     }
 }

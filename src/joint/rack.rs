@@ -8,7 +8,7 @@
 //! wheel that rolls on top of a rack has a negative one.
 
 use super::prismatic::AXIS;
-use super::{BETWEEN, Ends, Holonomic, MOST_BODIES, MOST_ROWS, Pair, between, lift, unit};
+use super::{BETWEEN, Ends, Holonomic, MOST_BODIES, MOST_ROWS, Pair, between, unit};
 use crate::parameter::{Key, Kind, Range, Takes, Values};
 use crate::plane::{Pose, Vector};
 use crate::scalar::{Lift, Scalar};
@@ -55,7 +55,7 @@ impl<S: Scalar> Holonomic<S> for Rack<S> {
 
     fn error<T: Lift<S>>(&self, poses: &[Pose<T>; MOST_BODIES]) -> [T; MOST_ROWS] {
         let [i, j, _] = poses;
-        let travel = i.rotate(lift(self.axis)).dot(between(&self.pair, poses));
+        let travel = i.carry(self.axis).dot(between(&self.pair, poses));
         let rolled = T::lift(self.travel) + T::lift(self.radius) * (j.angle - i.angle);
         [travel - rolled, T::zero(), T::zero()]
     }

@@ -72,7 +72,7 @@ impl<S: Scalar> Force<S> {
     fn on<T: Lift<S>>(&self, time: S, pose: &Pose<T>) -> (Vector<T>, Vector<T>) {
         let along = lift(self.direction);
         let along = if self.turns_along { pose.rotate(along) } else { along };
-        (along * T::lift(self.magnitude.at(time)[0]), pose.rotate(lift(self.at)))
+        (along * T::lift(self.magnitude.at(time)[0]), pose.carry(self.at))
     }
 }
 

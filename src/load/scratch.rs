@@ -3,7 +3,7 @@
 //! F = −d v   (N),   dissipated d v²
 //! ```
 
-use super::{Acts, Ends, Powers, lift};
+use super::{Acts, Ends, Powers};
 use crate::parameter::{Key, Kind, Range, Takes, Values};
 use crate::plane::{Motion, Pose, Vector, Wrench};
 use crate::scalar::{Lift, Scalar};
@@ -41,7 +41,7 @@ impl<S: Scalar> Acts<S> for Scratch<S> {
         poses: &[Pose<T>; 2],
         motions: &[Motion<T>; 2],
     ) -> [Wrench<T>; 2] {
-        let arm = poses[1].rotate(lift(self.0));
+        let arm = poses[1].carry(self.0);
         [Wrench::none(), Wrench::at(arm, motions[1].at(arm) * -T::lift(self.1))]
     }
 

@@ -5,7 +5,7 @@
 //! ```
 //! Where the points coincide there is no direction, and no force.
 
-use super::{Acts, Ends, Powers, lift};
+use super::{Acts, Ends, Powers};
 use crate::joint::Pair;
 use crate::parameter::{Key, Kind, Range, Takes, Values};
 use crate::plane::{Motion, Pose, Vector, Wrench};
@@ -66,7 +66,7 @@ impl<S: Scalar> Spring<S> {
         poses: &[Pose<T>; 2],
         motions: &[Motion<T>; 2],
     ) -> Option<Stretch<T>> {
-        let arms = [poses[0].rotate(lift(self.pair.s_i)), poses[1].rotate(lift(self.pair.s_j))];
+        let arms = [poses[0].carry(self.pair.s_i), poses[1].carry(self.pair.s_j)];
         let apart = poses[1].position + arms[1] - poses[0].position - arms[0];
         let length = apart.norm();
         if length == T::zero() {

@@ -12,7 +12,7 @@ mod lift;
 mod octuple;
 
 pub use decimal::{Decimal, NotADecimal};
-pub use dual::{Dual, Dual64};
+pub use dual::{Dual, Dual64, Infinitesimal};
 pub use lift::Lift;
 pub use octuple::F256;
 
