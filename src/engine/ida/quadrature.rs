@@ -176,30 +176,42 @@ impl Quadrature {
     /// Weights (s) of the powers at the nodes in the integral from the begin of the latest step to
     /// a time (s) within it.
     fn weights(&self, time: f64) -> [f64; NODES] {
-        let used = self.used;
-        let (end, length) = (self.nodes[0].time, self.nodes[0].time - self.nodes[1].time);
-        let mut x = [0.0; NODES];
-        for (x, node) in x.iter_mut().zip(&self.nodes[..used]) {
-            *x = (node.time - end) / length;
+        match self.used {
+            2 => self.weights_of::<2>(time),
+            3 => self.weights_of::<3>(time),
+            4 => self.weights_of::<4>(time),
+            5 => self.weights_of::<5>(time),
+            _ => self.weights_of::<NODES>(time),
         }
+    }
+
+    /// The same where N nodes hold something.
+    fn weights_of<const N: usize>(&self, time: f64) -> [f64; NODES] {
+        let (end, length) = (self.nodes[0].time, self.nodes[0].time - self.nodes[1].time);
+        let x: [f64; N] = std::array::from_fn(|j| (self.nodes[j].time - end) / length);
         let mut weights = [0.0; NODES];
         let half = 0.5 * ((time - end) / length + 1.0);
         for (abscissa, gauss) in GAUSS {
             let at = half * (1.0 + abscissa) - 1.0;
             // before[j] = Π (at − x_i) over i < j; the products over i > j follow backwards.
-            let mut before = [1.0; NODES];
-            for j in 1..used {
+            let mut before = [1.0; N];
+            for j in 1..N {
                 before[j] = before[j - 1] * (at - x[j - 1]);
             }
             let mut after = 1.0;
-            for j in (0..used).rev() {
+            for j in (0..N).rev() {
                 weights[j] += gauss * before[j] * after;
                 after *= at - x[j];
             }
         }
-        for j in 0..used {
-            let others = (0..used).filter(|i| *i != j);
-            weights[j] *= half * length / others.map(|i| x[j] - x[i]).product::<f64>();
+        for j in 0..N {
+            let mut others = 1.0;
+            for i in 0..N {
+                if i != j {
+                    others *= x[j] - x[i];
+                }
+            }
+            weights[j] *= half * length / others;
         }
         weights
     }
