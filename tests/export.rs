@@ -376,6 +376,66 @@ fn the_scene_for_openmbv_has_walls_blocks_racks_pinions_and_springs() {
 }
 
 #[test]
+fn the_scene_for_openmbv_has_gear_wheels_loads_and_torsion_springs() {
+    let run = Run::of("planetary-gear", &["run.duration=0.1", "run.sample_interval=0.01"]);
+    let output = run.beside("scene.ombvx");
+    {
+        let _alone = alone();
+        export(&run.file(), Format::OpenMbv, TableName::Samples, &output, false).unwrap();
+    }
+    let scene = std::fs::read_to_string(&output).unwrap();
+    let motion = hdf5::File::open(run.beside("scene.ombvh5")).unwrap();
+    let of =
+        |name: &str| motion.dataset(&format!("{name}/data")).unwrap().read_2d::<f64>().unwrap();
+    // 20, 20 and 60 teeth about axes 0.04 m apart: sun and planet outside, the ring inside
+    let bodies = scene.split("<CompoundRigidBody").skip(1);
+    let radius = |contour: &[[f64; 2]]| contour[0][0].hypot(contour[0][1]);
+    for (body, ring, pitch) in bodies
+        .skip(1)
+        .zip([false, false, false, true])
+        .zip([0.02, 0.0, 0.02, 0.06])
+        .map(|((b, r), p)| (b, r, p))
+    {
+        let gear = ["gear_outer", "gear_inner"].into_iter().find(|gear| body.contains(gear));
+        assert_eq!(gear.is_some(), pitch > 0.0);
+        let Some(gear) = gear else { continue };
+        let both = contours(body, gear);
+        let (outer, inner) = (radius(&both[0]), radius(&both[1]));
+        assert!(outer > inner && inner > 0.5 * pitch);
+        let at_pitch = if ring { inner } else { outer };
+        assert!((at_pitch - pitch).abs() < 1e-8, "{gear}: {at_pitch}");
+    }
+    // the brake turns the carrier about z, and has two heads
+    let things = elements(&scene);
+    assert!(things.iter().any(|(depth, element, name)| {
+        (*depth, element.as_str(), name.as_deref()) == (2, "Arrow", Some("brake"))
+    }));
+    assert_eq!(scene.matches("'toDoubleHead'").count(), 1);
+    let (brake, carrier) = (of("loads/brake"), of("bodies/carrier"));
+    assert_eq!(brake.column(1), carrier.column(1));
+    assert!(brake.rows().into_iter().all(|row| row[4] == 0.0 && row[5] == 0.0 && row[6] > 0.0));
+    // the torsion spring stands on the ring
+    assert!(
+        scene.split("<CompoundRigidBody name=\"ring\">").nth(1).unwrap().contains("\"coil_coil\"")
+    );
+
+    let run = Run::of("slider-crank-gas", &["run.duration=0.001"]);
+    let output = run.beside("scene.ombvx");
+    {
+        let _alone = alone();
+        export(&run.file(), Format::OpenMbv, TableName::Samples, &output, false).unwrap();
+    }
+    let motion = hdf5::File::open(run.beside("scene.ombvh5")).unwrap();
+    let loads = motion.group("loads").unwrap().member_names().unwrap();
+    let gas =
+        motion.dataset(&format!("loads/{}/data", loads[0])).unwrap().read_2d::<f64>().unwrap();
+    // along the guide, tip at the piston
+    let slider = motion.dataset("bodies/slider/data").unwrap().read_2d::<f64>().unwrap();
+    assert_eq!(gas.column(1), slider.column(1));
+    assert!(gas.rows().into_iter().all(|row| row[4] != 0.0 && row[5] == 0.0 && row[6] == 0.0));
+}
+
+#[test]
 fn adaptive_samples_make_an_even_film() {
     let run = Run::of("four-bar-a", &["run.duration=0.001", "run.sampling=adaptive"]);
     let file = run.file();

@@ -8,6 +8,7 @@ mod check;
 mod complaint;
 mod description;
 mod owner;
+pub mod picture;
 
 pub use crate::joint::GROUND;
 pub use check::{check, is_name};

@@ -2,7 +2,8 @@
 
 use crate::case::{Case, Changes};
 use crate::course::Course;
-use crate::model::{Description, JointDescription, LoadDescription, NamedPoint, Play};
+use crate::model::picture::{Acting, Wheel, acting, wheels};
+use crate::model::{Description, JointDescription, NamedPoint, Play};
 use crate::record::ResultFile;
 use serde::Serialize;
 use std::path::Path;
@@ -42,6 +43,8 @@ struct DrawnJoint {
     /// Radius (m) of a pinion about its second point; the rack is as far off, to the left of the axis
     /// where it is positive.
     pinion: Option<f64>,
+    /// The pitch circles of a gear pair.
+    wheels: Option<[DrawnWheel; 2]>,
     /// Whether a drive or a speed controller sits on it.
     driven: bool,
     /// The circles of a bearing with clearance.
@@ -56,6 +59,16 @@ struct PointOnBody {
     /// Index of the body; none is the ground.
     body: Option<usize>,
     point: usize,
+}
+
+/// A pitch circle.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+struct DrawnWheel {
+    at: PointOnBody,
+    /// Radius (m).
+    radius: f64,
+    /// Whether its teeth are on its inner side.
+    ring: bool,
 }
 
 /// The circles of a clearance (m).
@@ -110,7 +123,7 @@ impl Drawing {
             bodies: description.bodies.iter().map(|body| points(&body.points)).collect(),
             joints: joints_of(description)?,
             springs: springs_of(description)?,
-            loads: description.loads.iter().filter_map(|load| load_of(description, load)).collect(),
+            loads: acting_on(description).filter_map(|load| load_of(description, &load)).collect(),
             gravity: gravity.reduce(|[x, y], [also_x, also_y]| [x + also_x, y + also_y]),
         })
     }
@@ -151,6 +164,10 @@ fn joints_of(description: &Description) -> Option<Vec<DrawnJoint>> {
         let controllers = description.loads.iter().filter(|load| load.part.is("speed-controller"));
         controllers.map(|controller| controller.part.text("joint"))
     };
+    let circle_of = |wheel: &Wheel| {
+        let at = point_on_body(description, &format!("{}.{}", wheel.body, wheel.point))?;
+        Some(DrawnWheel { at, radius: wheel.radius, ring: wheel.is_ring })
+    };
     let joint = |joint: &JointDescription| {
         let [first, second] = joint.between();
         Some(DrawnJoint {
@@ -158,6 +175,8 @@ fn joints_of(description: &Description) -> Option<Vec<DrawnJoint>> {
             kind: joint.part.kind().word,
             axis: joint.part.get("axis").map(|_| joint.part.vector("axis")),
             pinion: joint.part.is("rack").then(|| joint.part.number("radius")),
+            wheels: wheels(description, joint)
+                .and_then(|[pinion, wheel]| Some([circle_of(&pinion)?, circle_of(&wheel)?])),
             driven: description.drives.iter().any(|drive| drive.joint == joint.name)
                 || controlled().any(|controlled| controlled == joint.name),
             clearance: joint.clearance.as_ref().and_then(|clearance| circles_of(&clearance.play)),
@@ -179,35 +198,29 @@ enum DrawnLoad {
     Coil { body: Option<usize>, on: Option<usize> },
 }
 
-fn load_of(description: &Description, load: &LoadDescription) -> Option<DrawnLoad> {
-    let part = &load.part;
+/// Where the loads act.
+fn acting_on(description: &Description) -> impl Iterator<Item = Acting<'_>> {
+    description.loads.iter().filter_map(|load| acting(description, load))
+}
+
+fn load_of(description: &Description, load: &Acting) -> Option<DrawnLoad> {
     let body = |name: &str| description.bodies.iter().position(|body| body.name == name);
-    Some(match part.kind().word {
-        "force" => {
-            let at = point_on_body(description, part.text("at"))?;
-            let given = if part.get("force").is_some() { "force" } else { "direction" };
-            let frame = if part.text("frame") == "body" { at.body } else { None };
-            DrawnLoad::Force { at, direction: part.vector(given), frame }
+    Some(match *load {
+        Acting::Spring { .. } => return None,
+        Acting::Force { at, direction, frame } => {
+            let at = point_on_body(description, at)?;
+            DrawnLoad::Force { at, direction, frame: body(frame) }
         }
-        "gas-force" => {
-            let guide = description.joints.iter().find(|joint| joint.name == part.text("joint"))?;
-            let [first, second] = guide.between().map(|end| point_on_body(description, end));
-            let push = part.number::<f64>("area").signum();
-            let direction = guide.part.vector("axis").map(|x: f64| push * x);
-            DrawnLoad::Force { at: second?, direction, frame: first?.body }
-        }
-        "torque" => DrawnLoad::Torque { body: body(part.text("body")), on: body(part.text("on")) },
-        "torsion-spring" => {
-            let [on, own] = part.pair("between").map(body);
-            DrawnLoad::Coil { body: own, on }
-        }
-        _ => return None,
+        Acting::Torque { body: own, on } => DrawnLoad::Torque { body: body(own), on: body(on) },
+        Acting::Coil { body: own, on } => DrawnLoad::Coil { body: body(own), on: body(on) },
     })
 }
 
 fn springs_of(description: &Description) -> Option<Vec<[PointOnBody; 2]>> {
-    let springs = description.loads.iter().filter(|load| load.part.is("spring"));
-    let ends = springs.map(|spring| spring.part.pair("between"));
+    let ends = acting_on(description).filter_map(|load| match load {
+        Acting::Spring { between, .. } => Some(between),
+        Acting::Force { .. } | Acting::Torque { .. } | Acting::Coil { .. } => None,
+    });
     ends.map(|[first, second]| {
         Some([point_on_body(description, first)?, point_on_body(description, second)?])
     })

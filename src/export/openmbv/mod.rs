@@ -11,7 +11,9 @@
 //! | coil spring | time, x, y, z of one end, x, y, z of the other, colour |
 //!
 //! Here bodies move in the plane z = 0 and turn by γ. The bodies stand in layers, the clearances are
-//! true to scale, guides, slots, racks and pinions stand on the bodies that have them, an arrow shows the force of a joint on its second body, tip at that body's point.
+//! true to scale; guides, slots, racks, gear wheels and torsion springs stand on the bodies that have them.
+//! An arrow shows the force of a joint on its second body, tip at that body's point; others, of one size
+//! whatever their own, where loads act: forces, and with two heads along z torques.
 
 mod motion;
 mod scene;

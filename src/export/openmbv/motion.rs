@@ -1,7 +1,7 @@
 //! The motion: an HDF5 file with a matrix for each thing of the scene.
 
 use super::super::WriteError;
-use super::scene::{Arrow, Body, PointOnBody, Scene, Spring};
+use super::scene::{Arrow, Body, Load, PointOnBody, Scene, Spring};
 use crate::record::{LibraryError, ResultFile, Written};
 use hdf5::file::LibraryVersion;
 use hdf5::types::VarLenAscii;
@@ -66,6 +66,14 @@ pub(super) fn write(
             put(&forces, &arrow.name, &OF_ARROW, &motion).map_err(library)?;
             written.values(&format!("forces/{}/data", arrow.name), &flat(&motion));
         }
+        if !scene.loads.is_empty() {
+            let loads = output.create_group("loads").map_err(library)?;
+            for load in &scene.loads {
+                let motion = track.of_load(load, scene.top())?;
+                put(&loads, &load.name, &OF_ARROW, &motion).map_err(library)?;
+                written.values(&format!("loads/{}/data", load.name), &flat(&motion));
+            }
+        }
     }
     output.flush().map_err(library)?;
     output.close().map_err(library)?;
@@ -80,6 +88,7 @@ fn unlabelled(path: &Path, scene: &Scene) -> Option<String> {
     let bodies = scene.bodies.iter().map(|body| (format!("bodies/{}/data", body.name), OF_BODY));
     let arrows = scene.arrows.iter();
     let arrows = arrows.map(|arrow| (format!("forces/{}/data", arrow.name), OF_ARROW));
+    let loads = scene.loads.iter().map(|load| (format!("loads/{}/data", load.name), OF_ARROW));
     let springs = scene.springs.iter();
     let springs = springs.map(|spring| (format!("springs/{}/data", spring.name), OF_SPRING));
     let file = File::with_options().with_fapl(|access| access.file_locking(false)).open(path);
@@ -88,7 +97,7 @@ fn unlabelled(path: &Path, scene: &Scene) -> Option<String> {
         let read = data.attr("Column Label")?.read_raw::<VarLenAscii>()?;
         Ok::<_, hdf5::Error>(read.iter().map(VarLenAscii::as_str).eq(labels))
     };
-    let mut all = bodies.chain(arrows).chain(springs);
+    let mut all = bodies.chain(arrows).chain(loads).chain(springs);
     all.find(|(name, labels)| !has(name, *labels).unwrap_or(false)).map(|(name, _)| name)
 }
 
@@ -185,6 +194,16 @@ impl Track<'_> {
         Ok(self.matrix(|row| {
             let [x, y] = at(row);
             [x, y, height, force_x[row], force_y[row], 0.0]
+        }))
+    }
+
+    fn of_load(&self, load: &Load, height: f64) -> Result<Array2<f64>, WriteError> {
+        let (at, frame) = (self.point(load.at)?, self.pose(load.frame)?);
+        let [u, v, along] = load.arrow;
+        Ok(self.matrix(|row| {
+            let ([x, y], [_, _, angle]) = (at(row), frame(row));
+            let (sin, cos) = angle.sin_cos();
+            [x, y, height, cos * u - sin * v, sin * u + cos * v, along]
         }))
     }
 

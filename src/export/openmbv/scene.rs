@@ -1,6 +1,7 @@
 //! The scene: what the bodies look like, as OpenMBV's XML.
 
 use super::super::Error;
+use crate::model::picture::{Acting, acting, wheels};
 use crate::model::{Description, JointDescription, NamedPoint, Play};
 use crate::record::ResultFile;
 use std::f64::consts::TAU;
@@ -13,6 +14,10 @@ const LAYER: f64 = 1.1;
 const GUIDE: f64 = 1.2;
 /// Coils of a spring.
 const COILS: f64 = 6.0;
+/// Turns of a torsion spring.
+const TURNS: f64 = 2.5;
+/// Length of the arrow of a load, whatever its own, over that of the largest body.
+const LOAD: f64 = 0.2;
 
 /// Corners of a circle.
 const CORNERS: usize = 48;
@@ -25,6 +30,8 @@ pub(super) struct Scene {
     pub arrows: Vec<Arrow>,
     /// Springs between points.
     pub springs: Vec<Spring>,
+    /// Forces and torques that act from outside, of one size whatever their own.
+    pub loads: Vec<Load>,
     /// Half the width of a bar (m).
     half_width: f64,
     /// Length of an arrow by force (m/N).
@@ -60,6 +67,18 @@ pub(super) struct Spring {
     length: f64,
 }
 
+/// The arrow of a force or a torque that acts on a body, in the direction in which it counts positive.
+pub(super) struct Load {
+    /// Name of the load.
+    pub name: String,
+    /// Where it acts.
+    pub at: PointOnBody,
+    /// The arrow (m), ...
+    pub arrow: [f64; 3],
+    /// ... in the frame of this body; `None` for the ground.
+    pub frame: Option<usize>,
+}
+
 /// A point that moves with a body.
 #[derive(Clone, Copy)]
 pub(super) struct PointOnBody {
@@ -90,6 +109,8 @@ impl Scene {
                 .into_iter()
                 .chain(eyes(description, name, points, half_width))
                 .chain(fittings(description, name, points, half_width, 0.5 * GUIDE * extent))
+                .chain(gears(description, name, points, half_width))
+                .chain(coils(description, name, half_width))
                 .collect(),
         };
         let mut bodies = vec![body("ground", None, &description.ground)];
@@ -105,6 +126,7 @@ impl Scene {
                 .filter_map(|(joint, name)| arrow(description, file, joint, name))
                 .collect(),
             springs: springs(description, file),
+            loads: loads(description, file, LOAD * extent),
             bodies,
             half_width,
             arrow_scale: if largest > 0.0 { extent / largest } else { 1.0 },
@@ -118,7 +140,7 @@ impl Scene {
 
     /// How many things move.
     pub fn things(&self) -> usize {
-        self.bodies.len() + self.arrows.len() + self.springs.len()
+        self.bodies.len() + self.arrows.len() + self.springs.len() + self.loads.len()
     }
 
     /// The scene as XML.
@@ -141,9 +163,18 @@ impl Scene {
         }
         xml.open("Group", "name=\"forces\"");
         for arrow in &self.arrows {
-            self.arrow(&mut xml, arrow);
+            self.arrow(&mut xml, &arrow.name, FORCE, "'toHead'", self.arrow_scale);
         }
         xml.close();
+        if !self.loads.is_empty() {
+            xml.open("Group", "name=\"loads\"");
+            for load in &self.loads {
+                // a torque along the axis that it turns about has two heads
+                let kind = if load.arrow[2] == 0.0 { "'toHead'" } else { "'toDoubleHead'" };
+                self.arrow(&mut xml, &load.name, LOADED, kind, 1.0);
+            }
+            xml.close();
+        }
         xml.close();
         xml.text
     }
@@ -186,18 +217,22 @@ impl Scene {
         xml.close();
     }
 
-    fn arrow(&self, xml: &mut Xml, arrow: &Arrow) {
-        xml.open("Arrow", &format!("name=\"{}\"", escaped(&arrow.name)));
-        xml.vector("diffuseColor", &[0.0, 1.0, 0.8]);
+    fn arrow(&self, xml: &mut Xml, name: &str, colour: [f64; 3], kind: &str, scale: f64) {
+        xml.open("Arrow", &format!("name=\"{}\"", escaped(name)));
+        xml.vector("diffuseColor", &colour);
         xml.number("diameter", 0.4 * self.half_width);
         xml.number("headDiameter", self.half_width);
         xml.number("headLength", 1.5 * self.half_width);
-        xml.element("type", "'toHead'");
+        xml.element("type", kind);
         xml.element("referencePoint", "'toPoint'");
-        xml.number("scaleLength", self.arrow_scale);
+        xml.number("scaleLength", scale);
         xml.close();
     }
 }
+
+/// Colours of the forces of joints and of loads: hue, saturation, value.
+const FORCE: [f64; 3] = [0.0, 1.0, 0.8];
+const LOADED: [f64; 3] = [0.12, 1.0, 0.9];
 
 /// XML as it is written, indented by the elements that are open.
 #[derive(Default)]
@@ -407,15 +442,90 @@ fn arrow(description: &Description, file: &ResultFile, joint: usize, name: &str)
 }
 
 fn springs(description: &Description, file: &ResultFile) -> Vec<Spring> {
-    let springs = description.loads.iter().filter(|load| load.part.is("spring"));
-    let drawn = springs.filter_map(|load| {
-        let [first, second] = load.part.pair("between");
+    let drawn = description.loads.iter().filter_map(|load| {
+        let Acting::Spring { between: [first, second], length } = acting(description, load)? else {
+            return None;
+        };
         let between =
             [point_on_body(description, file, first)?, point_on_body(description, file, second)?];
-        let length = load.part.number("free_length");
         Some(Spring { name: load.name.clone(), between, length })
     });
     drawn.collect()
+}
+
+/// The forces and torques from outside, as arrows of this length (m).
+fn loads(description: &Description, file: &ResultFile, length: f64) -> Vec<Load> {
+    let index = |body: &str| file.bodies().iter().position(|known| known == body);
+    let drawn = description.loads.iter().filter_map(|load| {
+        let (at, arrow, frame) = match acting(description, load)? {
+            Acting::Force { at, direction: [x, y], frame } => {
+                let size = length / x.hypot(y);
+                (point_on_body(description, file, at)?, [size * x, size * y, 0.0], index(frame))
+            }
+            Acting::Torque { body, on } => {
+                let body = index(body).or_else(|| index(on));
+                (PointOnBody { body, point: [0.0; 2] }, [0.0, 0.0, length], None)
+            }
+            Acting::Spring { .. } | Acting::Coil { .. } => return None,
+        };
+        Some(Load { name: load.name.clone(), at, arrow, frame })
+    });
+    drawn.collect()
+}
+
+/// The rims of the gear wheels on a body.
+fn gears(
+    description: &Description,
+    body: &str,
+    points: &[NamedPoint],
+    half_width: f64,
+) -> Vec<Shape> {
+    let pairs = description.joints.iter().filter_map(|joint| {
+        let pair = wheels(description, joint)?;
+        Some(pair.into_iter().map(|wheel| (joint.name.as_str(), wheel)))
+    });
+    let own = pairs.flatten().filter(|(_, wheel)| wheel.body == body);
+    let shape = own.filter_map(|(joint, wheel)| {
+        let centre = place(points.iter().find(|known| known.name == wheel.point)?);
+        let pitch = wheel.radius;
+        let rim = match wheel.is_ring {
+            true => pitch + half_width,
+            false => (pitch - half_width).max(0.5 * pitch),
+        };
+        let outlines = vec![circle(centre, pitch.max(rim)), circle(centre, pitch.min(rim))];
+        Some(Shape { name: format!("gear_{joint}"), outlines })
+    });
+    shape.collect()
+}
+
+/// The torsion springs about the mass centre of a body.
+fn coils(description: &Description, body: &str, half_width: f64) -> Vec<Shape> {
+    let own = description.loads.iter().filter(|load| match acting(description, load) {
+        Some(Acting::Coil { body: turned, on }) => {
+            turned == body || turned == "ground" && on == body
+        }
+        Some(Acting::Spring { .. } | Acting::Force { .. } | Acting::Torque { .. }) | None => false,
+    });
+    own.map(|load| Shape {
+        name: format!("coil_{}", load.name),
+        outlines: vec![spiral(half_width, 4.0 * half_width, 0.2 * half_width)],
+    })
+    .collect()
+}
+
+/// A band along a spiral about the origin, from one radius to another (m).
+fn spiral(from: f64, to: f64, width: f64) -> Vec<[f64; 2]> {
+    let count = (TURNS * CORNERS as f64) as usize;
+    let along = |offset: f64| {
+        (0..=count).map(move |k| {
+            let part = k as f64 / count as f64;
+            let (sin, cos) = (TAU * TURNS * part).sin_cos();
+            let radius = from + (to - from) * part + offset;
+            [radius * cos, radius * sin]
+        })
+    };
+    let back: Vec<_> = along(-0.5 * width).collect();
+    along(0.5 * width).chain(back.into_iter().rev()).collect()
 }
 
 /// A point written `body.point`.

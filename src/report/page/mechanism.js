@@ -1,6 +1,6 @@
 // The mechanism at one moment: bodies, joints, bearings with enlarged clearance, forces.
 import { theme, seriesColour } from "./theme.js";
-import { arrow, arrowWithin, circle, fadingPath, label, labelBeside } from "./pen.js";
+import { arrow, arrowWithin, circle, fadingPath, label, labelBeside, meet, widthOf } from "./pen.js";
 import { inUnit, prefixed } from "./format.js";
 
 /** Smallest radii that journal and bearing are drawn with (px). */
@@ -23,6 +23,10 @@ export function extent(run) {
     for (const joint of run.drawing.joints.filter((joint) => joint.pinion)) {
       const [x, y] = place(seat(joint));
       for (const side of [-joint.pinion, joint.pinion]) take([x + side, y + side]);
+    }
+    for (const { at, radius } of run.drawing.joints.flatMap((joint) => joint.wheels ?? [])) {
+      const [x, y] = place(at);
+      for (const side of [-radius, radius]) take([x + side, y + side]);
     }
     for (const joint of run.drawing.joints.filter((joint) => joint.walls)) {
       const [x, y] = place(seat(joint));
@@ -70,9 +74,18 @@ function seat({ kind, between }) {
   return kind === "revolute" ? between[0] : between[1];
 }
 
+/** Where a joint is drawn (m): at its seat, or where the pitch circles of two wheels touch. */
+function spot(joint, place) {
+  if (!joint.wheels) return place(seat(joint));
+  const [large, small] = joint.wheels.toSorted((a, b) => b.radius - a.radius);
+  const [[x, y], [u, v]] = [place(large.at), place(small.at)];
+  const part = large.radius / Math.hypot(u - x, v - y);
+  return [x + part * (u - x), y + part * (v - y)];
+}
+
 /** Centre of a joint (m) as drawn at the time sought. */
 export function jointPlace(run, joint, factor) {
-  return placesOf(run, factor).place(seat(run.drawing.joints[joint]));
+  return spot(run.drawing.joints[joint], placesOf(run, factor).place);
 }
 
 /** Radii of bearing and journal on the screen (px); what is between them is the clearance. */
@@ -91,23 +104,27 @@ export function drawMechanism(pen, run, view, look) {
   const at = (place) => [view.x(place[0]), view.y(place[1])];
   drawGround(pen, run, places, at, look.symbol);
   for (let body = 0; body < run.bodies.length; body++) drawBody(pen, outline(places, body).map(at), look);
+  run.drawing.joints.forEach((joint, index) => {
+    const colour = seriesColour(look.colourOf(run.joints[index]));
+    for (const wheel of joint.wheels ?? []) drawWheel(pen, run, wheel, at(places.place(wheel.at)), view.scale, colour);
+  });
   for (const centre of places.centres) drawCentre(pen, at(centre));
   for (const ends of run.drawing.springs) drawSpring(pen, ...ends.map((end) => at(places.place(end))), look.symbol);
   run.drawing.joints.forEach((joint, index) => {
-    const centre = at(places.place(seat(joint)));
+    const centre = at(spot(joint, places.place));
     const colour = seriesColour(look.colourOf(run.joints[index]));
     if (joint.kind === "distance") drawLink(pen, ...joint.between.map((end) => at(places.place(end))), colour);
     if (joint.pinion) drawPinion(pen, run, joint, centre, joint.pinion * view.scale, colour, look.symbol);
     else if (joint.walls) drawWalls(pen, run, joint, at(places.place(joint.between[0])), centre, colour, view.scale);
     else if (joint.axis) drawSlide(pen, run, joint, at(places.place(joint.between[0])), centre, colour, look.symbol);
     if (joint.clearance) drawBearing(pen, run, joint, index, centre, at(places.place(joint.between[1])), view, look);
-    else if (!joint.walls?.pin) drawPin(pen, centre, colour);
+    else if (!joint.walls?.pin && !joint.wheels) drawPin(pen, centre, colour);
     if (joint.driven) drawDrive(pen, centre, view, joint, look);
   });
   for (const load of run.drawing.loads) drawLoad(pen, run, load, places, at, look.symbol);
   const cuts = [];
   run.drawing.joints.forEach((joint, index) => {
-    if (look.forces) drawForce(pen, run, joint, index, at(places.place(seat(joint))), view, look, cuts);
+    if (look.forces) drawForce(pen, run, joint, index, at(spot(joint, places.place)), view, look, cuts);
   });
   const taken = [...look.taken, ...drawNames(pen, run, places, at, view, look)];
   for (const { cut, colour, alpha, force } of cuts) {
@@ -135,6 +152,26 @@ function turned(run, body) {
 /** The direction of a joint's axis on the screen (rad). */
 function axisAngle(run, { axis: [x, y], between }) {
   return -(Math.atan2(y, x) + turned(run, between[0].body));
+}
+
+/** The pitch circle of a wheel, its rim beside it, and a spoke from the one that has its teeth outside. */
+function drawWheel(pen, run, { at, radius, ring }, centre, scale, colour) {
+  const pixels = radius * scale;
+  const rim = Math.max(3, 0.08 * pixels);
+  pen.strokeStyle = colour;
+  pen.lineWidth = 1.6;
+  circle(pen, ...centre, pixels);
+  pen.stroke();
+  pen.lineWidth = 1;
+  circle(pen, ...centre, ring ? pixels + rim : Math.max(pixels - rim, 0));
+  pen.stroke();
+  const spoke = -turned(run, at.body);
+  const [from, to] = ring ? [pixels, pixels + rim] : [0, pixels];
+  pen.lineWidth = 1.6;
+  pen.beginPath();
+  pen.moveTo(centre[0] + from * Math.cos(spoke), centre[1] + from * Math.sin(spoke));
+  pen.lineTo(centre[0] + to * Math.cos(spoke), centre[1] + to * Math.sin(spoke));
+  pen.stroke();
 }
 
 /** A pinion with a spoke, and the rack that it rolls on; its radius (px) is positive where that is to the left of the axis. */
@@ -466,18 +503,28 @@ function drawForce(pen, run, joint, index, centre, view, look, cuts) {
 /** The rectangles that names of joints and bodies, and the joints themselves, take. */
 function drawNames(pen, run, places, at, view, look) {
   const taken = [];
-  const take = (x, y, wide, high) => taken.push({ left: x - wide, right: x + wide, top: y - high, bottom: y + high });
+  const names = [];
+  const around = (x, y, wide, high) => ({ left: x - wide, right: x + wide, top: y - high, bottom: y + high });
+  const take = (...box) => taken.push(around(...box));
+  // joints at one place have their names below one another
   const name = (text, x, y, how) => {
+    const width = widthOf(pen, text, how);
+    const middle = { left: x + width / 2, right: x - width / 2, center: x }[how.align ?? "left"];
+    let box = around(middle, y, width / 2 + 2, 7);
+    for (let tries = 0; tries < 6 && names.some((other) => meet(box, other)); tries++) {
+      y += 15;
+      box = around(middle, y, width / 2 + 2, 7);
+    }
     label(pen, text, x, y, how);
-    const width = pen.measureText(text).width;
-    take({ left: x + width / 2, right: x - width / 2, center: x }[how.align ?? "left"], y, width / 2 + 2, 9);
+    names.push(box);
+    take(middle, y, width / 2 + 2, 9);
   };
   run.drawing.joints.forEach((joint, index) => {
-    const [x, y] = at(places.place(seat(joint)));
+    const [x, y] = at(spot(joint, places.place));
     const hole = joint.clearance ? circles(joint.clearance, look.factor, view.scale).bearing + look.wall : 6;
     take(x, y, hole, hole);
     if (!look.names) return;
-    const grounded = seat(joint).body === null;
+    const grounded = !joint.wheels && seat(joint).body === null;
     const how = { size: 14, colour: seriesColour(look.colourOf(run.joints[index])), weight: "600" };
     if (grounded) name(run.joints[index], x - Math.max(20 * look.symbol, hole) - 6, y + 17 * look.symbol, { ...how, align: "right" });
     else name(run.joints[index], x + 0.75 * hole + 5, y - 0.75 * hole - 9, how);

@@ -30,6 +30,17 @@ export function label(pen, text, x, y, { size = 12, colour = theme().text, align
   pen.fillText(text, x, y);
 }
 
+/** Width of a label (px). */
+export function widthOf(pen, text, { size = 12, weight = "" } = {}) {
+  pen.font = `${weight} ${size}px ${FONT}`;
+  return pen.measureText(text).width;
+}
+
+/** Whether two boxes have a place in common. */
+export function meet(one, other) {
+  return one.left < other.right && other.left < one.right && one.top < other.bottom && other.top < one.bottom;
+}
+
 export function circle(pen, x, y, radius) {
   pen.beginPath();
   pen.arc(x, y, Math.max(radius, 0), 0, 2 * Math.PI);
@@ -90,8 +101,7 @@ export function arrowWithin(pen, box, [x, y], [dx, dy], colour, width) {
  * end, where it lies in the box and on none of the rectangles taken. Its own is taken from then on.
  */
 export function labelBeside(pen, box, { end, direction }, text, look, taken) {
-  pen.font = `${look.weight} 12px ${FONT}`;
-  const [wide, high] = [pen.measureText(text).width / 2 + 4, 9];
+  const [wide, high] = [widthOf(pen, text, look) / 2 + 4, 9];
   const [x, y] = direction;
   const places = [];
   for (let along = 6; along <= 150; along += 12) {
@@ -103,7 +113,6 @@ export function labelBeside(pen, box, { end, direction }, text, look, taken) {
   }
   const about = ([a, b]) => ({ left: a - wide, right: a + wide, top: b - high, bottom: b + high });
   const inside = ({ left, right, top, bottom }) => left >= box.left && right <= box.right && top >= box.top && bottom <= box.bottom;
-  const meet = (one, other) => one.left < other.right && other.left < one.right && one.top < other.bottom && other.top < one.bottom;
   const free = (place) => inside(about(place)) && !taken.some((other) => meet(about(place), other));
   const clamp = (value, low, most) => Math.min(Math.max(value, low), Math.max(low, most));
   const [a, b] = places.find(free) ?? [
