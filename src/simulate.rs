@@ -534,6 +534,7 @@ pub fn header(case: &Case, mechanism: &Mechanism<f64>, started_utc: String) -> H
         clearances: names.clearances,
         drives: names.drives,
         points: names.points,
+        memories: names.memories,
         sundials_version: ida::sundials_version(),
         started_utc,
         samples: match case.plan.checkpoint_interval {

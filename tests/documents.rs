@@ -132,6 +132,8 @@ fn format_md_tells_the_datasets_of_certificates_and_tangents() {
     let mut command = Command::new(env!("CARGO_BIN_EXE_freeplay"));
     command.args(["run", "cases/four-bar-a.toml", "--tangent", "--set", "run.duration=1e-3", "-o"]);
     command.arg(&run).args(["--set", "observe.points=[\"coupler.B\"]"]);
+    let bristles = "{law=\"dahl\", coefficient=0.1, stiffness=1e4}";
+    command.args(["--set", &format!("joints.A.clearance.friction={bristles}")]);
     said_by(command.current_dir(root()));
     let mut expected: Vec<String> = told.keys().cloned().collect();
     expected.sort();

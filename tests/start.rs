@@ -623,6 +623,83 @@ fn courses_go_on_where_they_stood() {
 }
 
 #[test]
+fn what_frictions_and_loads_remember_goes_on_as_it_was() {
+    let laws = [
+        "{law=\"dahl\", coefficient=0.1, stiffness=100.0}",
+        "{law=\"lugre\", coefficient=0.08, static=0.12, stribeck=0.05, stiffness=100.0, damping=0.1, \
+         viscous=0.0}",
+        "{law=\"elasto-plastic\", coefficient=0.08, static=0.12, stribeck=0.05, stiffness=100.0, \
+         damping=0.1, viscous=0.0, elastic_share=0.6}",
+        "{law=\"gonthier\", coefficient=0.08, static=0.12, stribeck=0.05, stiffness=100.0, damping=0.1, \
+         viscous=0.0, dwell_time=1e-3, transition=0.01}",
+    ];
+    let samples = |file: &ResultFile| file.observations(0..file.length(Dimension::Time)).unwrap();
+    for law in laws {
+        for engine in ["explicit", "ida"] {
+            let folder = tempfile::tempdir().unwrap();
+            let folder = folder.path();
+            let (engine, law) =
+                (format!("solver.engine={engine}"), format!("joints.A.clearance.friction={law}"));
+            let run = |name: &str, set: &[&str]| {
+                let set = [&["run.sample_interval=3.0517578125e-5", &law, &engine], set].concat();
+                run_into(folder, "cases/four-bar-a.toml", name, &set)
+            };
+            let whole = run("whole.h5", &["run.duration=0.03125"]);
+            let whole = samples(&whole);
+            // where bristles are bent but not all that they can be, and the contact goes on for a while
+            let bent = |k: &usize| {
+                let lasts = whole[*k..].iter().take(3).all(|at| at.clearances[0].in_contact);
+                let contact = &whole[*k].clearances[0];
+                let slides = contact.tangential_force.abs() > 0.05 * contact.normal_force;
+                lasts
+                    && !slides
+                    && contact.normal_force > 10.0
+                    && whole[*k].memories[0].abs() > 1e-7
+            };
+            let begin = (1..whole.len() - 3).find(bent).unwrap();
+            let at = format!("start.at={:?}", whole[begin].time);
+            let left = format!("run.duration={:?}", whole[begin + 2].time - whole[begin].time);
+            let rest = run("rest.h5", &["start.from=whole.h5", &at, &left]);
+            assert_eq!(rest.memories()[0], "A.friction");
+            let rest = samples(&rest);
+            assert_eq!(rest[0].memories, whole[begin].memories);
+            for (ours, theirs) in rest.iter().zip(&whole[begin..]) {
+                let [ours, theirs] = [ours, theirs].map(|at| at.clearances[0].tangential_force);
+                assert!((ours - theirs).abs() <= 1e-6 * theirs.abs(), "{law} {ours} {theirs}");
+            }
+            // what it remembers matters
+            let text = ResultFile::open(&folder.join("rest.h5")).unwrap();
+            std::fs::write(folder.join("rest.toml"), text.text("case_toml").unwrap()).unwrap();
+            let straight = run_into(folder, "rest.toml", "straight.h5", &["start.memory=[]"]);
+            let [ours, theirs] =
+                [&samples(&straight)[0], &whole[begin]].map(|at| at.clearances[0].tangential_force);
+            assert!((ours - theirs).abs() > 1e-3 * theirs.abs(), "{law} {ours} {theirs}");
+        }
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let set =
+        ["run.duration=0.01953125", "run.sample_interval=1.220703125e-3", "run.sampling=uniform"];
+    let whole = samples(&run_into(folder, "cases/speed-controller.toml", "whole.h5", &set));
+    let set = [
+        "start.from=whole.h5",
+        "start.at=9.765625e-3",
+        "run.duration=9.765625e-3",
+        "run.sample_interval=1.220703125e-3",
+        "run.sampling=uniform",
+    ];
+    let rest = run_into(folder, "cases/speed-controller.toml", "rest.h5", &set);
+    assert_eq!(rest.memories(), ["servo.memory"]);
+    let rest = samples(&rest);
+    let begin = whole.iter().position(|sample| sample.time == 9.765625e-3).unwrap();
+    assert!(whole[begin].memories[0] > 0.0 && rest[0].memories == whole[begin].memories);
+    for (ours, theirs) in rest.iter().zip(&whole[begin..]) {
+        let off = (ours.memories[0] - theirs.memories[0]).abs();
+        assert!(off < 1e-9 * theirs.memories[0], "{off:e} at {}", ours.time);
+    }
+}
+
+#[test]
 fn what_no_run_can_start_from_is_told_with_its_key() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
@@ -631,16 +708,10 @@ fn what_no_run_can_start_from_is_told_with_its_key() {
     run_into(folder, "cases/four-bar-a.toml", "other.h5", &set);
     run_into(folder, "cases/pendulum.toml", "pendulum.h5", &[]);
     let bristles = "joints.A.clearance.friction={law=\"dahl\", coefficient=0.1, stiffness=1e4}";
-    run_into(
-        folder,
-        "cases/four-bar-a.toml",
-        "dahl.h5",
-        &[EIGHTS, bristles, "run.duration=6.103515625e-3"],
-    );
-    let dahl = ResultFile::open(&folder.join("dahl.h5")).unwrap();
-    let samples = dahl.observations(0..dahl.length(Dimension::Time)).unwrap();
+    run_into(folder, "cases/four-bar-a.toml", "plain.h5", &[EIGHTS, "run.duration=6.103515625e-3"]);
+    let plain = ResultFile::open(&folder.join("plain.h5")).unwrap();
+    let samples = plain.observations(0..plain.length(Dimension::Time)).unwrap();
     let touching = samples.iter().find(|s| s.clearances[0].in_contact).unwrap().time;
-    run_into(folder, "cases/speed-controller.toml", "servo.h5", &["run.duration=1e-3"]);
     std::fs::write(folder.join("no.h5"), "nothing").unwrap();
     let at = format!("start.at={touching:?}");
     for (case, set, words) in [
@@ -673,10 +744,24 @@ fn what_no_run_can_start_from_is_told_with_its_key() {
         ),
         (
             "four-bar-a",
-            vec!["start.from=dahl.h5", bristles, &at],
-            vec!["start.from", "\"A\"", "friction remembers"],
+            vec!["start.from=plain.h5", bristles, &at],
+            vec!["start.from", "does not hold \"A.friction\""],
         ),
-        ("speed-controller", vec!["start.from=servo.h5"], vec!["\"servo\" remembers"]),
+        (
+            "four-bar-a",
+            vec![bristles, "start.memory=[{of=\"B.friction\", value=0.0}]"],
+            vec!["start.memory.1.of", "none of: A.friction"],
+        ),
+        (
+            "four-bar-a",
+            vec![bristles, "start.memory=[{of=\"A.friction\", value=nan}]"],
+            vec!["start.memory.1.value", "finite"],
+        ),
+        (
+            "four-bar-a",
+            vec!["start.memory=[{of=\"A.friction\", value=0.0}]"],
+            vec!["start.memory.1.of", "nothing here remembers"],
+        ),
     ] {
         let path = format!("{case}.toml");
         let mut arguments = vec!["run", &path, "-o", "new.h5", "--quiet"];
@@ -694,7 +779,7 @@ fn what_no_run_can_start_from_is_told_with_its_key() {
         "--quiet",
         "--no-tangent",
         "--set",
-        "start.from=dahl.h5",
+        "start.from=plain.h5",
         "--set",
         "start.at=0",
         "--set",

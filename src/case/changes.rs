@@ -190,10 +190,21 @@ fn remove_clearances(document: &mut DocumentMut) {
         }
     }
     // a body of that name would have a table
-    let start = document.get_mut("start").and_then(Item::as_table_like_mut);
-    if let Some(start) = start
+    let mut start = document.get_mut("start").and_then(Item::as_table_like_mut);
+    if let Some(start) = &mut start
         && start.get("contact").is_some_and(|contact| !contact.is_table_like())
     {
         start.remove("contact");
+    }
+    // loads go on remembering
+    let of_load = |name: Option<&str>| name.is_some_and(|name| name.ends_with(".memory"));
+    match start.and_then(|start| start.get_mut("memory")) {
+        Some(Item::Value(Value::Array(all))) => {
+            all.retain(|one| of_load(one.as_inline_table().and_then(|one| one.get("of")?.as_str())))
+        }
+        Some(Item::ArrayOfTables(all)) => {
+            all.retain(|one| of_load(one.get("of").and_then(Item::as_str)));
+        }
+        _ => {}
     }
 }

@@ -18,10 +18,10 @@ const TENSIONS: [(&str, Tension); 2] = [("keep", Tension::Keep), ("cut", Tension
 /// The mechanism that the root of a case describes.
 pub(super) fn description(root: &mut TableReader) -> Description {
     let starts = |keys: &mut TableReader| {
-        let given = (journals(keys), clock(keys), contacts(keys));
+        let given = (journals(keys), clock(keys), contacts(keys), memories(keys));
         (given, keys.other_tables(start))
     };
-    let ((journals, clock, contacts), start) =
+    let ((journals, clock, contacts, memories), start) =
         root.optional_table("start", starts).unwrap_or_default();
     Description {
         ground: root.optional_table("ground", points).unwrap_or_default(),
@@ -33,6 +33,7 @@ pub(super) fn description(root: &mut TableReader) -> Description {
         journals,
         clock,
         contacts,
+        memories,
         observed: root.optional_table("observe", observed).unwrap_or_default(),
     }
 }
@@ -59,6 +60,15 @@ fn contacts(keys: &mut TableReader) -> Vec<(String, Decimal)> {
     let contact =
         |keys: &mut TableReader| (keys.required("joint", ""), keys.required("impact_rate", "m/s"));
     keys.list_of_tables("contact", contact)
+}
+
+/// What frictions and loads remember at the start.
+fn memories(keys: &mut TableReader) -> Vec<(String, Decimal)> {
+    if keys.has_table("memory") {
+        return Vec::new();
+    }
+    let memory = |keys: &mut TableReader| (keys.required("of", ""), keys.required("value", ""));
+    keys.list_of_tables("memory", memory)
 }
 
 /// The points that are observed.

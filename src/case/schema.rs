@@ -215,6 +215,7 @@ pub fn tables() -> String {
     table(&mut text, "Start of a body: `NAME = { … }` in `[start]`", "", &defs["start"]);
     let contact = "Open contacts: `[[start.contact]]`";
     table(&mut text, contact, "", &defs["contact"]);
+    table(&mut text, "What is remembered: `[[start.memory]]`", "", &defs["memory"]);
     table(&mut text, "Observers: `[observe]`", "", &schema["properties"]["observe"]);
     table(&mut text, "Run: `[run]`", "", &schema["properties"]["run"]);
     table(&mut text, "Windows of samples: `[[run.window]]`", "", &defs["window"]);

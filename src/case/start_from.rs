@@ -2,15 +2,14 @@
 //! file's name, so that the text of a case as run needs no file beside it.
 //!
 //! Written are the bodies' coordinates and velocities, all of them fixed, the time that courses of
-//! time go on from (`clock`), and of each contact that is open the rate at which it began
-//! (`[[start.contact]]`). A result file has all of that at each of its samples. What friction and
-//! loads remember beside is in no sample: a start that would need it is refused.
+//! time go on from (`clock`), of each contact that is open the rate at which it began
+//! (`[[start.contact]]`), and what its friction and loads remember (`[[start.memory]]`). A result file has
+//! all of that at each of its samples.
 
 use super::table_reader::{Findings, TableReader};
 use super::{files, mechanism};
-use crate::friction::FrictionLaw;
 use crate::mechanism::Observation;
-use crate::model::{Complaint, KeyPath, Model, check, members};
+use crate::model::{Complaint, Description, KeyPath, Model, members};
 use crate::record::ResultFile;
 use std::error::Error;
 use std::path::{Path, PathBuf};
@@ -91,11 +90,30 @@ pub(super) fn take_in(
     let comment = format!("  # s; from {name} at its {:?} s", sample.time);
     write(document, &result, &sample, &open, (clock, comment))
         .ok_or_else(|| wrong(format!("{name:?} holds what is no number at {:?} s", sample.time)))?;
-    remembers(document, &open).map_or(Ok(Some(file)), |what| {
-        Err(wrong(format!(
-            "{what}, which result files do not hold: start where nothing is remembered"
-        )))
-    })
+    let mut memories = Array::new();
+    for memory in remembered(document, &open) {
+        let place = result.memories().iter().position(|known| *known == memory);
+        let value = place.and_then(|place| number(sample.memories[place]));
+        let Some(value) = value else {
+            return Err(wrong(format!(
+                "{name:?} does not hold {memory:?}, which is remembered there"
+            )));
+        };
+        let mut table = InlineTable::new();
+        table.insert("of", memory.as_str().into());
+        table.insert("value", value);
+        memories.push(table);
+    }
+    let start = document.get_mut("start").and_then(Item::as_table_like_mut);
+    if let Some(start) = start.filter(|_| !memories.is_empty()) {
+        start.insert("memory", Item::Value(Value::Array(memories)));
+    }
+    Ok(Some(file))
+}
+
+/// A number as case files have it; nothing where it is none.
+fn number(x: f64) -> Option<Value> {
+    files::as_number(&format!("{x:?}")).filter(|_| x.is_finite())
 }
 
 /// Whether an entry of `[start]` is the rough pose of a body, which chooses a branch and no more.
@@ -169,7 +187,6 @@ fn write(
     open: &[(String, f64)],
     (clock, comment): (f64, String),
 ) -> Option<()> {
-    let number = |x: f64| files::as_number(&format!("{x:?}")).filter(|_| x.is_finite());
     let mut bodies = Vec::new();
     for (name, body) in result.bodies().iter().zip(&sample.bodies) {
         let mut table = InlineTable::new();
@@ -213,24 +230,19 @@ fn write(
     Some(())
 }
 
-/// What of a mechanism remembers more than its start says, in words. A document that is no case is
-/// told about later.
-fn remembers(document: &DocumentMut, open: &[(String, f64)]) -> Option<String> {
+/// Names of what a mechanism remembers where these contacts are open; nothing of a document that is no
+/// case, which is told about later.
+fn remembered(document: &DocumentMut, open: &[(String, f64)]) -> Vec<String> {
     let mut findings = Findings::default();
     let description = TableReader::root(document.as_table(), &mut findings, mechanism::description);
-    if !check(&description).is_empty() {
-        return None;
-    }
-    let model = Model::<f64>::new(&description).ok()?;
-    let load = model.loads().iter().position(|load| load.inner_scale().is_some());
-    if let Some(load) = load.and_then(|load| description.loads.get(load)) {
-        return Some(format!("load {:?} remembers what it has gone through", load.name));
-    }
-    let clearances = model.names().clearances.iter().zip(model.clearances());
-    let mut bristly = clearances.filter(|(_, clearance)| {
-        clearance.friction.iter().flat_map(FrictionLaw::inner_scales).count() > 0
-    });
-    let touching = |name: &String| open.iter().any(|(joint, _)| joint == name);
-    let (name, _) = bristly.find(|(name, _)| touching(name))?;
-    Some(format!("joint {name:?} is in contact there, and its friction remembers"))
+    // names alone are wanted, whatever the start is
+    let description = Description { memories: Vec::new(), ..description };
+    let Ok(model) = Model::<f64>::new(&description) else { return Vec::new() };
+    let names = model.names();
+    let rests = |memory: &String| {
+        let owner = memory.split_once('.').map_or("", |(owner, _)| owner);
+        let of_friction = !memory.ends_with(".memory");
+        of_friction && !open.iter().any(|(joint, _)| joint == owner)
+    };
+    names.memories.iter().filter(|memory| !rests(memory)).cloned().collect()
 }

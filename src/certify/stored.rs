@@ -260,6 +260,7 @@ fn same_mechanism(case: &Case, file: &ResultFile) -> Result<Case, NotAReference>
         ("[start]", ours.start != theirs.start),
         ("[start] clock", ours.clock != theirs.clock),
         ("[start] contact", ours.contacts != theirs.contacts),
+        ("[start] memory", ours.memories != theirs.memories),
         ("[observe]", ours.observed != theirs.observed),
     ];
     match differs.into_iter().find(|(_, differs)| *differs) {

@@ -11,6 +11,9 @@ use crate::friction::{Branch, FrictionLaw, Inner, MOST_INNER, Sloped};
 use crate::scalar::{Scalar, bits};
 use serde::{Deserialize, Serialize};
 
+/// Edges that inner states may be beyond, one after the other.
+const MOST_CROSSINGS: usize = 8;
+
 /// What a contact remembers of its begin and of its present branch.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(bound(serialize = "S: Scalar", deserialize = "S: Scalar"))]
@@ -92,6 +95,21 @@ impl<S: Scalar> Clearance<S> {
             inverse_impact_rate,
             branch: self.friction.map(|friction| friction.branch(slip, slip_acceleration)),
             pulling: pressing < S::zero(),
+        }
+    }
+
+    /// Brings the branch of the friction of a contact that has gone on for a while in line with its slip
+    /// (m/s) and with what it remembers: edges beyond which these are have been crossed.
+    pub fn recall(&self, contact: &mut Contact<S>, slip: S, inner: Inner<S>) {
+        let Some(friction) = self.friction else { return };
+        for _ in 0..MOST_CROSSINGS {
+            let Some(branch) = contact.branch else { return };
+            let beyond = |edge: &u8| {
+                let away = friction.inner_edge(branch, *edge, slip, inner);
+                away.is_some_and(|away| away.value < S::zero())
+            };
+            let Some(edge) = (0..friction.inner_edges()).find(beyond) else { return };
+            contact.branch = Some(friction.across(branch, edge));
         }
     }
 

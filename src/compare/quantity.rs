@@ -123,6 +123,7 @@ impl Parts {
             loose: Vec::new(),
             drives: file.drives().to_vec(),
             points: file.points().to_vec(),
+            memories: file.memories().to_vec(),
         })
     }
 
@@ -134,6 +135,7 @@ impl Parts {
             Dimension::Clearance => Some(&self.0.clearances),
             Dimension::Drive => Some(&self.0.drives),
             Dimension::Point => Some(&self.0.points),
+            Dimension::Memory => Some(&self.0.memories),
             Dimension::Time
             | Dimension::Event
             | Dimension::Contact
@@ -194,6 +196,7 @@ pub(super) mod tests {
             loose: vec![1],
             drives: names(&["crank"]),
             points: Vec::new(),
+            memories: Vec::new(),
         })
     }
 

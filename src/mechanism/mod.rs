@@ -226,6 +226,7 @@ impl<S: Scalar> Mechanism<S> {
             model,
             layout,
         };
+        mechanism.start.z.copy_from_slice(mechanism.model.memories());
         mechanism.assemble()?;
         Ok(mechanism)
     }
@@ -235,8 +236,8 @@ impl<S: Scalar> Mechanism<S> {
         &self.model
     }
 
-    /// The assembled start: coordinates, from [`Model::origin`], and velocities at t = 0, inner
-    /// states and integrals zero.
+    /// The assembled start: coordinates, from [`Model::origin`], velocities and inner states at t = 0,
+    /// integrals zero.
     pub fn start(&self) -> &Snapshot<S> {
         &self.start
     }

@@ -8,8 +8,8 @@
 //! centre, released under gravity: δ = g² t⁴/8c); if it is inward, or if there is none, in flight.
 //! A joint that the model says to be in contact is, with the rate at which that began.
 
-use super::Mechanism;
 use super::layout::Role;
+use super::{Mechanism, inner_states};
 use crate::clearance::{Gap, Mode};
 use crate::dae::{Fault, State, System};
 use crate::scalar::Scalar;
@@ -71,13 +71,18 @@ impl<S: Scalar> Mechanism<S> {
         self.evaluate(state)?;
         let now = &self.now;
         let clearances = self.model.clearances().iter().zip(self.model.contacts());
-        for (((law, given), mode), touch) in clearances.zip(&mut self.modes).zip(&now.touches) {
+        let places = self.inner_places.iter();
+        let clearances = clearances.zip(places);
+        for ((((law, given), places), mode), touch) in
+            clearances.zip(&mut self.modes).zip(&now.touches)
+        {
             let (Mode::Contact(contact), Some(touch)) = (mode, touch) else { continue };
             let (gap, rates) = (&touch.gap, &touch.rates);
             let (_, acceleration) = law.second_rates(gap, rates, &now.motions, &now.accelerations);
             let began = contact.impact_rate;
             let rate = if given.is_some() { rates.rate } else { began };
             *contact = law.begun_at(began, gap.depth, rate, rates.slip, acceleration);
+            law.recall(contact, rates.slip, inner_states(&now.z, places));
         }
         Ok(())
     }

@@ -15,6 +15,8 @@ pub struct Observation {
     pub drive_torques: Vec<f64>,
     /// Every point that the case wants to be observed.
     pub points: Vec<PointObservation>,
+    /// What frictions and loads remember: the inner states, each in its own unit.
+    pub memories: Vec<f64>,
     /// Energies and works.
     pub energy: EnergyObservation,
     /// What x, y, angle and their rates of each body, then the offset of each clearance, are

@@ -23,6 +23,7 @@ impl<S: Scalar> Mechanism<S> {
                 .map(|drive| self.drive_torque(drive).to_f64())
                 .collect(),
             points: self.model.points().iter().map(|point| self.observe_point(point)).collect(),
+            memories: self.now.z.iter().map(|z| z.to_f64()).collect(),
             energy: self.observe_energy(integrals),
             beyond: self.beyond(),
         }

@@ -208,7 +208,11 @@ impl<S: Scalar> Mechanism<S> {
         self.place(&state);
         self.pass_gates();
         self.choose_start_modes(state).map_err(start_fault)?;
+        let mut z = z.clone();
+        self.release(&mut z);
+        let state = State { z: &z, ..state };
         self.evaluate(state).map_err(start_fault)?;
+        self.start.z.copy_from_slice(&z);
         self.start_energy = self.stored_energy();
         Ok(())
     }

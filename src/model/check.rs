@@ -572,11 +572,19 @@ fn check_starts(complaints: &mut Complaints, description: &Description) {
 }
 
 /// The contacts that a start is in are in clearances, by the names of these, each once; the clock is
-/// a time.
+/// a time, and what is remembered is named once.
 fn check_open_contacts(complaints: &mut Complaints, description: &Description) {
     let start = KeyPath::new(["start"]);
     if let Some(clock) = &description.clock {
         complaints.require_finite(start.key("clock"), clock, "s");
+    }
+    let mut named = HashSet::new();
+    for (k, (of, value)) in description.memories.iter().enumerate() {
+        let key = start.key("memory").key((k + 1).to_string());
+        complaints.require_finite(key.key("value"), value, "");
+        if !named.insert(of) {
+            complaints.add(key.key("of"), format!("names {of:?} twice"));
+        }
     }
     let mut seen = HashSet::new();
     for (k, (joint, rate)) in description.contacts.iter().enumerate() {

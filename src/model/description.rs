@@ -30,6 +30,8 @@ pub struct Description {
     pub clock: Option<Decimal>,
     /// Penetration rates (m/s) at the begin of the contacts that a start is in, by joint.
     pub contacts: Vec<(String, Decimal)>,
+    /// What frictions and loads remember at the start, by the name of the inner state; of others nothing.
+    pub memories: Vec<(String, Decimal)>,
     /// Points that are observed, each written `body.point`.
     pub observed: Vec<String>,
 }

@@ -21,7 +21,7 @@ use crate::contact::elastic::{self, Elastic, ElasticLaw};
 use crate::contact::viscous::{self, Viscous};
 use crate::contact::{Damping, NormalLaw};
 use crate::course::Course;
-use crate::friction::{self, Friction};
+use crate::friction::{self, Friction, FrictionLaw};
 use crate::joint::{self, Pair, Relation};
 use crate::load::{self, Load};
 use crate::parameter::{Takes, Value, Values};
@@ -94,6 +94,9 @@ pub struct Names {
     pub drives: Vec<String>,
     /// Points that are observed, as `coupler.P`.
     pub points: Vec<String>,
+    /// Inner states, as `A.friction` of a joint with clearance (`A.friction_2` a second one) and
+    /// `governor.memory` of a load.
+    pub memories: Vec<String>,
 }
 
 impl Names {
@@ -128,6 +131,8 @@ pub struct Model<S> {
     goes_on: bool,
     /// Penetration rates (m/s) at the begin of the contacts that the start is in, by clearance.
     contacts: Vec<Option<S>>,
+    /// What frictions and loads remember at the start, by inner state.
+    memories: Vec<S>,
     points: Vec<Point<S>>,
 }
 
@@ -181,15 +186,22 @@ impl<S: Scalar> Model<S> {
             let given = description.contacts.iter().find(|(name, _)| name == joint);
             given.map(|(_, rate)| rate.value())
         };
+        let loads = loads.collect::<Result<Vec<_>, _>>()?;
+        let load_names: Vec<String> =
+            description.loads.iter().map(|load| load.name.clone()).collect();
+        let drives = drives.collect::<Result<_, _>>()?;
+        let contacts = names.clearances.iter().map(contact).collect();
+        let memories = memories(&names, &clearances, (&load_names, &loads));
         Ok(Model {
+            memories: remembered(description, &memories)?,
             description: Arc::new(description.clone()),
             goes_on: description.clock.is_some(),
-            contacts: names.clearances.iter().map(contact).collect(),
+            contacts,
             masses: with_ground(|body| &body.mass),
             inertias: with_ground(|body| &body.inertia),
-            drives: drives.collect::<Result<_, _>>()?,
-            loads: loads.collect::<Result<_, _>>()?,
-            load_names: description.loads.iter().map(|load| load.name.clone()).collect(),
+            drives,
+            loads,
+            load_names,
             points: (description.observed.iter())
                 .map(|written| point(description, &frame, written))
                 .map(|(body, at)| Point { body, at })
@@ -197,7 +209,7 @@ impl<S: Scalar> Model<S> {
             starts: bodies().map(|body| start(description, &frame, &body.name)).collect(),
             joints,
             clearances,
-            names,
+            names: Names { memories, ..names },
             origin: frame.origin(),
         })
     }
@@ -276,6 +288,11 @@ impl<S: Scalar> Model<S> {
         &self.contacts
     }
 
+    /// What frictions and loads remember at the start, by inner state, each in its own unit.
+    pub fn memories(&self) -> &[S] {
+        &self.memories
+    }
+
     /// Points that are observed.
     pub fn points(&self) -> &[Point<S>] {
         &self.points
@@ -300,7 +317,47 @@ fn names(description: &Description) -> Names {
         loose,
         drives: description.drives.iter().map(|drive| drive.name.clone()).collect(),
         points: description.observed.clone(),
+        memories: Vec::new(),
     }
+}
+
+/// Names of the inner states: those of the frictions in clearances, then those of loads.
+fn memories<S: Scalar>(
+    names: &Names,
+    clearances: &[Clearance<S>],
+    loads: (&[String], &[Load<S>]),
+) -> Vec<String> {
+    let frictions = names.clearances.iter().zip(clearances).flat_map(|(name, clearance)| {
+        let count = clearance.friction.iter().flat_map(FrictionLaw::inner_scales).count();
+        (1..=count).map(move |k| match k {
+            1 => format!("{name}.friction"),
+            k => format!("{name}.friction_{k}"),
+        })
+    });
+    let loads = loads.0.iter().zip(loads.1).filter(|(_, load)| load.inner_scale().is_some());
+    frictions.chain(loads.map(|(name, _)| format!("{name}.memory"))).collect()
+}
+
+/// What is remembered at the start, by inner state.
+fn remembered<S: Scalar>(
+    description: &Description,
+    memories: &[String],
+) -> Result<Vec<S>, Vec<Complaint>> {
+    let mut complaints = Vec::new();
+    let mut values = vec![S::zero(); memories.len()];
+    for (k, (name, value)) in description.memories.iter().enumerate() {
+        match memories.iter().position(|known| known == name) {
+            Some(place) => values[place] = value.value(),
+            None => complaints.push(Complaint {
+                key: KeyPath::new(["start", "memory"]).key((k + 1).to_string()).key("of"),
+                message: match memories {
+                    [] => format!("is {name:?}, but nothing here remembers"),
+                    all => format!("is {name:?}, which is none of: {}", all.join(", ")),
+                },
+            }),
+        }
+    }
+    if complaints.is_empty() { Ok(values) } else { Err(complaints) }
 }
 
 /// The frame of the model: along the fixed frame, from an origin of its own.

@@ -203,6 +203,7 @@ pub(super) fn names_of(file: &ResultFile) -> Names {
         loose: Vec::new(),
         drives: file.drives().to_vec(),
         points: file.points().to_vec(),
+        memories: file.memories().to_vec(),
     }
 }
 

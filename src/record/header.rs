@@ -25,6 +25,8 @@ pub struct Header {
     pub drives: Vec<String>,
     /// Names of the points that are observed.
     pub points: Vec<String>,
+    /// Names of the inner states.
+    pub memories: Vec<String>,
     /// Version of SUNDIALS: attribute `sundials_version`.
     pub sundials_version: String,
     /// More attributes of the root, with their names: tolerances, decisions.

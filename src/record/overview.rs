@@ -35,7 +35,10 @@ impl Overview {
         let rest = file.attributes().iter().filter(|(name, _)| !told.contains(&name.as_str()));
         let dimensions = Dimension::ALL
             .into_iter()
-            .filter(|dimension| *dimension != Dimension::Point || !file.points().is_empty())
+            .filter(|dimension| match dimension {
+                Dimension::Point | Dimension::Memory => file.length(*dimension) > 0,
+                _ => true,
+            })
             .map(|dimension| (dimension, file.length(dimension), file.names(dimension).to_vec()));
         Ok(Overview {
             path: file.path().to_owned(),

@@ -117,6 +117,16 @@ impl ResultFile {
         self.names(Dimension::Point)
     }
 
+    /// Whether a dataset of the table is in the file, or was left out, as it is of nothing.
+    pub(super) fn has(&self, dataset: &Dataset) -> bool {
+        !dataset.is_optional() || dataset.items().is_none_or(|items| self.length(items) > 0)
+    }
+
+    /// Names of the inner states of frictions and loads.
+    pub fn memories(&self) -> &[String] {
+        self.names(Dimension::Memory)
+    }
+
     /// All attributes of the root, in the order in which they were written.
     pub fn attributes(&self) -> &[(String, Attribute)] {
         &self.attributes
@@ -283,11 +293,12 @@ impl ResultFile {
             joints: vec![JointObservation::default(); self.joints().len()],
             drive_torques: vec![0.0; self.drives().len()],
             points: vec![PointObservation::default(); self.points().len()],
+            memories: vec![0.0; self.memories().len()],
             ..Observation::default()
         };
         let mut all = vec![none; rows.len()];
         let along_samples = DATASETS.iter().filter(|dataset| dataset.rows() == Dimension::Time);
-        let of_nothing = |dataset: &Dataset| dataset.is_optional() && self.points().is_empty();
+        let of_nothing = |dataset: &Dataset| !self.has(dataset);
         for dataset in along_samples.filter(|dataset| !of_nothing(dataset)) {
             let table = self.table_rows(self.dataset(dataset.name)?, rows.clone())?;
             for (sample, values) in all.iter_mut().zip(table.values.chunks(table.width.max(1))) {
@@ -457,9 +468,10 @@ impl ResultFile {
 
     fn read_length(&self, dimension: Dimension) -> Result<usize, Error> {
         let name = dimension.name();
-        let may_miss = [Dimension::Revolution, Dimension::Point];
+        let may_miss = [Dimension::Revolution, Dimension::Point, Dimension::Memory];
         if may_miss.contains(&dimension) && !self.file.link_exists(name) {
-            // a file of a program that did not keep extremes by revolution, or no points to observe
+            // a file of a program that did not keep extremes by revolution, no points to observe
+            // or nothing that remembers
             return Ok(0);
         }
         let (path, missing) = (self.path.clone(), format!("it has no dimension \"{name}\""));
@@ -470,8 +482,8 @@ impl ResultFile {
     }
 
     fn read_names(&self, dimension: Dimension) -> Result<Vec<String>, Error> {
-        use Dimension::{Body, Clearance, Drive, Joint, Point};
-        let named = [Body, Joint, Clearance, Drive, Point];
+        use Dimension::{Body, Clearance, Drive, Joint, Memory, Point};
+        let named = [Body, Joint, Clearance, Drive, Point, Memory];
         if !named.contains(&dimension) || self.length(dimension) == 0 {
             return Ok(Vec::new());
         }
@@ -484,9 +496,10 @@ impl ResultFile {
             Some(Attribute::Text(names)) => names.split(' ').map(str::to_owned).collect(),
             _ => Vec::new(),
         };
+        let parted = [Point, Memory].contains(&dimension);
         let is_right = |name: &str| match name.split_once('.') {
-            Some((body, point)) if dimension == Point => is_name(body) && is_name(point),
-            _ => dimension != Point && is_name(name),
+            Some((owner, part)) => parted && is_name(owner) && is_name(part),
+            None => !parted && is_name(name),
         };
         if let Some((at, name)) = names.iter().enumerate().find(|(_, name)| !is_right(name)) {
             let name = shortened(name);

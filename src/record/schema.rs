@@ -32,11 +32,14 @@ pub enum Dimension {
     Revolution,
     /// Points that are observed; a file of a case that observes none has not the dimension.
     Point,
+    /// Inner states of frictions and loads; a file of a case where nothing remembers has not the
+    /// dimension.
+    Memory,
 }
 
 impl Dimension {
     /// All, in the order in which they stand in a file.
-    pub const ALL: [Dimension; 10] = [
+    pub const ALL: [Dimension; 11] = [
         Dimension::Time,
         Dimension::Body,
         Dimension::Joint,
@@ -47,6 +50,7 @@ impl Dimension {
         Dimension::Peak,
         Dimension::Revolution,
         Dimension::Point,
+        Dimension::Memory,
     ];
 
     /// Name of the dimension and of its scale.
@@ -62,6 +66,7 @@ impl Dimension {
             Dimension::Peak => "peak",
             Dimension::Revolution => "revolution",
             Dimension::Point => "point",
+            Dimension::Memory => "memory",
         }
     }
 
@@ -78,6 +83,7 @@ impl Dimension {
             Dimension::Peak => "index of the peak of a normal force",
             Dimension::Revolution => "index of the revolution of the first drive",
             Dimension::Point => "index of the point observed",
+            Dimension::Memory => "index of the inner state of a friction or a load",
         }
     }
 }
@@ -125,6 +131,8 @@ pub enum Source {
     Drive,
     /// A value of each point that is observed, at each sample.
     Point(Place<PointObservation>),
+    /// Each inner state at each sample.
+    Memory,
     /// A value of each event.
     Event(Place<Event>),
     /// A value of each contact.
@@ -231,6 +239,7 @@ impl Dataset {
             Source::Joint(_) => Some(Dimension::Joint),
             Source::Drive => Some(Dimension::Drive),
             Source::Point(_) => Some(Dimension::Point),
+            Source::Memory => Some(Dimension::Memory),
             Source::Extreme(measure, ..) => Some(match measure {
                 Measure::AccelerationX | Measure::AccelerationY | Measure::AngularAcceleration => {
                     Dimension::Body
@@ -252,6 +261,7 @@ impl Dataset {
             Source::Joint(place) => (place.get)(&sample.joints[item]),
             Source::Drive => sample.drive_torques[item],
             Source::Point(place) => (place.get)(&sample.points[item]),
+            Source::Memory => sample.memories[item],
             Source::Event(_)
             | Source::Contact(_)
             | Source::Peak(_)
@@ -269,6 +279,7 @@ impl Dataset {
             Source::Joint(place) => (place.put)(&mut sample.joints[item], value),
             Source::Drive => sample.drive_torques[item] = value,
             Source::Point(place) => (place.put)(&mut sample.points[item], value),
+            Source::Memory => sample.memories[item] = value,
             Source::Event(_)
             | Source::Contact(_)
             | Source::Peak(_)
@@ -279,7 +290,7 @@ impl Dataset {
 
     /// Whether files of cases with none of its items do without it.
     pub const fn is_optional(&self) -> bool {
-        matches!(self.source, Source::Point(_))
+        matches!(self.source, Source::Point(_) | Source::Memory)
     }
 
     const fn compared(self, quantity: Quantity) -> Dataset {
@@ -359,7 +370,7 @@ const fn extreme(
 }
 
 /// Every dataset but the index scales, in the order in which they stand in a file.
-pub static DATASETS: [Dataset; 82] = {
+pub static DATASETS: [Dataset; 83] = {
     use Drawn::{Extremes, Smooth};
     use Measure as M;
     use Quantity as Q;
@@ -553,6 +564,13 @@ pub static DATASETS: [Dataset; 82] = {
             Sample(at!(energy.residual)),
         )
         .drawn(Extremes),
+        real(
+            "inner_state",
+            "",
+            "what frictions and loads remember: the deflection of bristles (m), a dwell, the integral of \
+             a controller (rad)",
+            Source::Memory,
+        ),
         real("event_time", "s", "time of the event", Event(at!(time))),
         index(
             "event_clearance",

@@ -129,7 +129,8 @@ impl Store {
 
     fn create_scales(&mut self, header: &Header) -> hdf5::Result<()> {
         for (id, dimension) in Dimension::ALL.into_iter().enumerate() {
-            if dimension == Dimension::Point && header.points.is_empty() {
+            let optional = matches!(dimension, Dimension::Point | Dimension::Memory);
+            if optional && names(header, dimension).is_some_and(<[String]>::is_empty) {
                 continue;
             }
             let handle = match names(header, dimension) {
@@ -160,12 +161,15 @@ impl Store {
     }
 
     fn create_datasets(&mut self, header: &Header) -> hdf5::Result<()> {
-        let left_out = |dataset: &Dataset| dataset.is_optional() && header.points.is_empty();
+        let left_out = |dataset: &Dataset| {
+            let items = dataset.items().and_then(|items| names(header, items));
+            dataset.is_optional() && items.is_some_and(<[String]>::is_empty)
+        };
         for dataset in DATASETS.iter().filter(|dataset| !left_out(dataset)) {
             let width =
                 dataset.items().map(|items| names(header, items).map_or(0, <[String]>::len));
             let handle = if dataset.name == Dimension::Time.name() {
-                self.scales[Dimension::Time as usize].1.clone()
+                scale_of(&self.scales, Dimension::Time).clone()
             } else {
                 let Dataset { name, unit, long_name, values, .. } = *dataset;
                 let chunks = self.chunks(dataset.rows());
@@ -180,7 +184,7 @@ impl Store {
                 )?;
                 let dimensions = [dataset.rows()].into_iter().chain(dataset.items());
                 for (place, dimension) in (0..).zip(dimensions) {
-                    let scale = &self.scales[dimension as usize].1;
+                    let scale = scale_of(&self.scales, dimension);
                     self.written.scale(&handle, scale, place)?;
                 }
                 handle
@@ -199,7 +203,7 @@ impl Store {
         let scale = (block.dimension != Dimension::Time).then(|| block.dimension.name());
         if let Some(name) = scale {
             let indices: Vec<i32> = rows.clone().map(|row| row as i32).collect();
-            let (_, scale) = &self.scales[block.dimension as usize];
+            let scale = scale_of(&self.scales, block.dimension);
             let written = append_rows(scale, (chunks, None), rows.clone(), &indices);
             all.push((name, written.map_err(failed(format!("write {name} to"), &self.path))?));
         }
@@ -266,7 +270,7 @@ impl Store {
             stored,
             (chunks, None),
         )?;
-        self.written.scale(&handle, &self.scales[series.along as usize].1, 0)?;
+        self.written.scale(&handle, scale_of(&self.scales, series.along), 0)?;
         let written = write_values(&handle, stored, (chunks, None), 0..rows, &series.values)?;
         self.written.rows(name, written, rows);
         Ok(())
@@ -302,6 +306,12 @@ fn failed(attempt: impl Into<String>, path: &Path) -> impl FnOnce(hdf5::Error) -
     }
 }
 
+/// The scale of a dimension that the file has.
+fn scale_of(scales: &[(Dimension, hdf5::Dataset)], dimension: Dimension) -> &hdf5::Dataset {
+    let found = scales.iter().find(|(of, _)| *of == dimension);
+    &found.expect("a dimension has its scale before what stands along it").1
+}
+
 /// Names of the items of a dimension that does not grow.
 fn names(header: &Header, dimension: Dimension) -> Option<&[String]> {
     match dimension {
@@ -310,6 +320,7 @@ fn names(header: &Header, dimension: Dimension) -> Option<&[String]> {
         Dimension::Clearance => Some(&header.clearances),
         Dimension::Drive => Some(&header.drives),
         Dimension::Point => Some(&header.points),
+        Dimension::Memory => Some(&header.memories),
         _ => None,
     }
 }

@@ -56,6 +56,7 @@ struct Widths {
     clearances: usize,
     drives: usize,
     points: usize,
+    memories: usize,
 }
 
 impl Writer {
@@ -119,6 +120,7 @@ impl Writer {
                 clearances: header.clearances.len(),
                 drives: header.drives.len(),
                 points: header.points.len(),
+                memories: header.memories.len(),
             },
             draft: Some(draft),
             path: path.to_owned(),
@@ -262,7 +264,7 @@ impl Writer {
     ) -> Result<(), Error> {
         let count = rows.len();
         let block = self.block(dimension);
-        let is_there = |dataset: &Dataset| !dataset.is_optional() || !file.points().is_empty();
+        let is_there = |dataset: &Dataset| file.has(dataset);
         let columns = datasets_of(dimension).zip(&mut block.columns);
         for (dataset, column) in columns.filter(|(dataset, _)| is_there(dataset)) {
             column.extend(file.table_rows(dataset, rows.clone())?.values);
@@ -286,6 +288,7 @@ impl Recorder for Writer {
             clearances: observation.clearances.len(),
             drives: observation.drive_torques.len(),
             points: observation.points.len(),
+            memories: observation.memories.len(),
         };
         assert!(widths == self.widths, "an observation has the lists that the header names");
         for (dataset, column) in datasets_of(Dimension::Time).zip(&mut self.samples.columns) {
@@ -298,6 +301,7 @@ impl Recorder for Writer {
                 Source::Joint(place) => column.extend(observation.joints.iter().map(place.get)),
                 Source::Drive => column.extend(&observation.drive_torques),
                 Source::Point(place) => column.extend(observation.points.iter().map(place.get)),
+                Source::Memory => column.extend(&observation.memories),
                 Source::Event(_)
                 | Source::Contact(_)
                 | Source::Peak(_)

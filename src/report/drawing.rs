@@ -152,6 +152,7 @@ fn ideal(description: &Description) -> Description {
     let mut ideal = description.clone();
     ideal.start.clear();
     ideal.contacts.clear();
+    ideal.memories.clear();
     ideal.observed.clear();
     for joint in &mut ideal.joints {
         joint.clearance = None;

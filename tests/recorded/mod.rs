@@ -62,6 +62,7 @@ impl Recorded {
             clearances: clearances.iter().map(|&name| name.to_owned()).collect(),
             drives: words(["crank"]),
             points: Vec::new(),
+            memories: Vec::new(),
             sundials_version: "6.4.1".to_owned(),
             attributes: vec![
                 ("solver_engine".to_owned(), Attribute::from("ida")),
@@ -374,6 +375,7 @@ fn observation(row: usize, header: &Header, numbers: &mut Numbers) -> Observatio
             .collect(),
         drive_torques: header.drives.iter().map(|_| numbers.next()).collect(),
         points: Vec::new(),
+        memories: Vec::new(),
         energy: EnergyObservation {
             kinetic: numbers.next(),
             potential: numbers.next(),
