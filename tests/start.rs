@@ -759,6 +759,11 @@ fn what_no_run_can_start_from_is_told_with_its_key() {
         ),
         (
             "four-bar-a",
+            vec![bristles, "start.memory=[{of=\"A.friction\", value=1e-6}]"],
+            vec!["start.memory", "\"A.friction\", but nothing touches there"],
+        ),
+        (
+            "four-bar-a",
             vec!["start.memory=[{of=\"A.friction\", value=0.0}]"],
             vec!["start.memory.1.of", "nothing here remembers"],
         ),

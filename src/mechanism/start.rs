@@ -111,7 +111,27 @@ impl<S: Scalar> Mechanism<S> {
         self.find_redundant(&q)?;
         let (v, velocities) = self.assemble_velocities(&q)?;
         self.check_accuracy(&q, &v, positions, velocities)?;
-        self.begin(&q, &v)
+        self.begin(&q, &v)?;
+        self.check_memories()
+    }
+
+    /// Complains of what is to be remembered of contacts that the start is not in.
+    fn check_memories(&self) -> Result<(), Vec<Complaint>> {
+        let names = &self.model.names().memories;
+        let forgotten = self.modes.iter().zip(&self.inner_places).flat_map(|(mode, places)| {
+            let flies = matches!(mode, Mode::Flight);
+            places.clone().filter(move |place| flies && self.model.memories()[*place] != S::zero())
+        });
+        let complaints: Vec<Complaint> = forgotten
+            .map(|place| Complaint {
+                key: KeyPath::new(["start", "memory"]),
+                message: format!(
+                    "gives {:?}, but nothing touches there at the start",
+                    names[place]
+                ),
+            })
+            .collect();
+        if complaints.is_empty() { Ok(()) } else { Err(complaints) }
     }
 
     /// How far the start may be from the exact one, over the sizes of coordinates and velocities:

@@ -126,11 +126,10 @@ impl RunExtremes {
         case: Option<&Case>,
         parts: Option<Revolutions>,
     ) -> Result<Self, Error> {
-        let times = file.times()?;
         let mechanism = case.and_then(|case| Simulation::new(case).ok());
         let mechanism = mechanism.map(|simulation| simulation.mechanism().clone());
         let names = names_of(file);
-        if let (Some(mechanism), Some(&end)) = (mechanism, times.last())
+        if let (Some(mechanism), Some(end)) = (mechanism, file.last_time()?)
             && *mechanism.model().names() == names
             && let Some(assembled) = Assembled::new(mechanism)
             && (parts.is_some() || once_round(&assembled, end) <= MOST_STRIDES * assembled.stride())
@@ -144,10 +143,11 @@ impl RunExtremes {
             let whole = (&revolutions[..], 0.0);
             let mut found = Self::of_revolutions(&names, whole, tolerance, parts, all);
             if file.events()?.iter().any(|event| event.kind == EventKind::Singular) {
-                found.know_no_more_than_samples(file, &times)?;
+                found.know_no_more_than_samples(file, &file.times()?)?;
             }
             return Ok(found);
         }
+        let times = file.times()?;
         let friction = has_friction(file)?;
         let mut quantities = Vec::new();
         for quantity in Quantity::all(&names) {

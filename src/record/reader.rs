@@ -180,6 +180,16 @@ impl ResultFile {
         self.column("time")
     }
 
+    /// Time of the last sample (s); `None` without samples.
+    ///
+    /// # Errors
+    /// Those of reading it.
+    pub fn last_time(&self) -> Result<Option<f64>, Error> {
+        let samples = self.length(Dimension::Time);
+        let last = samples.saturating_sub(1)..samples;
+        Ok(self.table_rows(self.dataset("time")?, last)?.values.first().copied())
+    }
+
     /// One column by its name, `angle.coupler` or `energy_kinetic`, in the dataset's unit.
     ///
     /// # Errors

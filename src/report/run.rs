@@ -3,10 +3,10 @@
 use super::Error;
 use super::drawing::{self, Drawing};
 use super::pack::{Packed, TIME_DIGITS, VALUE_DIGITS, pack};
-use super::thin::rows_to_keep;
+use super::thin::{BLOCK, rows_to_keep};
 use crate::case::Case;
 use crate::certify::Horizon;
-use crate::record::{self, DATASETS, Dataset, Drawn, ResultFile, Table, column_name};
+use crate::record::{self, DATASETS, Dataset, Drawn, ResultFile, column_name};
 use crate::run::Contact;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -40,7 +40,8 @@ pub(super) struct Run<'a> {
     pub case: Option<Case>,
     pub times: Vec<f64>,
     pub contacts: Vec<Contact>,
-    tables: BTreeMap<&'static str, Table>,
+    /// Datasets over time that the page draws and the file has.
+    drawn: Vec<&'static Dataset>,
 }
 
 /// What the page's script gets of a run.
@@ -73,27 +74,14 @@ pub(super) struct PageRun<'a> {
 impl<'a> Run<'a> {
     /// Reads what the page needs.
     pub fn read(file: &'a ResultFile, label: String) -> Result<Self, record::Error> {
-        let mut tables = BTreeMap::new();
-        for dataset in drawn() {
-            match file.table(dataset.name) {
-                Ok(table) => tables.insert(dataset.name, table),
-                Err(record::Error::Missing { .. }) => None,
-                Err(error) => return Err(error),
-            };
-        }
         Ok(Run {
             file,
             label,
             case: drawing::case_of(file),
             times: file.times()?,
             contacts: file.contacts()?,
-            tables,
+            drawn: drawn().filter(|dataset| file.dataset(dataset.name).is_ok()).collect(),
         })
-    }
-
-    /// A dataset over time; `None` where the file has it not.
-    pub fn table(&self, name: &str) -> Option<&Table> {
-        self.tables.get(name)
     }
 
     /// Why the run did not come to its end, if it did not.
@@ -120,7 +108,7 @@ impl<'a> Run<'a> {
         most_samples: usize,
     ) -> Result<PageRun<'_>, Error> {
         let file = self.file;
-        let kept = self.rows_to_keep(most_samples);
+        let kept = self.rows_to_keep(most_samples)?;
         Ok(PageRun {
             label: &self.label,
             title: file.text("title").unwrap_or_default(),
@@ -158,11 +146,13 @@ impl<'a> Run<'a> {
         };
         let times: Vec<f64> = kept.iter().map(|row| self.times[*row]).collect();
         add("time".to_owned(), &times, TIME_DIGITS)?;
-        for (name, table) in &self.tables {
-            for item in 0..table.width {
-                let column = table.column(item);
-                let values: Vec<f64> = kept.iter().map(|row| column[*row]).collect();
-                add(column_name(name, self.item_name(table, item)), &values, VALUE_DIGITS)?;
+        for &dataset in &self.drawn {
+            for (item, values) in self.kept_of(dataset, kept)?.iter().enumerate() {
+                add(
+                    column_name(dataset.name, self.item_name(dataset, item)),
+                    values,
+                    VALUE_DIGITS,
+                )?;
             }
         }
         for (name, is_time) in OF_CONTACTS {
@@ -172,21 +162,47 @@ impl<'a> Run<'a> {
         Ok(columns)
     }
 
-    fn item_name(&self, table: &Table, item: usize) -> Option<&str> {
-        let names = self.file.names(table.dataset.items()?);
+    /// The columns of a dataset in the rows to keep, which rise.
+    fn kept_of(
+        &self,
+        dataset: &'static Dataset,
+        kept: &[usize],
+    ) -> Result<Vec<Vec<f64>>, record::Error> {
+        let mut columns = vec![Vec::with_capacity(kept.len()); self.width(dataset)];
+        for rows in kept.chunk_by(|one, next| one / BLOCK == next / BLOCK) {
+            let (Some(first), Some(last)) = (rows.first(), rows.last()) else { continue };
+            let table = self.file.table_rows(dataset, *first..*last + 1)?;
+            for (item, column) in columns.iter_mut().enumerate() {
+                let value = |row: &usize| table.values[(row - first) * table.width + item];
+                column.extend(rows.iter().map(value));
+            }
+        }
+        Ok(columns)
+    }
+
+    /// How many columns a dataset has.
+    fn width(&self, dataset: &Dataset) -> usize {
+        dataset.items().map_or(1, |items| self.file.length(items))
+    }
+
+    fn item_name(&self, dataset: &Dataset, item: usize) -> Option<&str> {
+        let names = self.file.names(dataset.items()?);
         names.get(item).map(String::as_str)
     }
 
-    fn rows_to_keep(&self, most: usize) -> Vec<usize> {
-        if self.times.len() <= most {
-            return (0..self.times.len()).collect();
-        }
-        let extremes = drawn().filter(|dataset| dataset.drawn == Drawn::Extremes);
-        let tables = extremes.filter_map(|dataset| self.table(dataset.name));
-        let columns: Vec<Vec<f64>> =
-            tables.flat_map(|table| (0..table.width).map(|item| table.column(item))).collect();
-        let columns: Vec<&[f64]> = columns.iter().map(Vec::as_slice).collect();
-        rows_to_keep(self.times.len(), most, &columns)
+    fn rows_to_keep(&self, most: usize) -> Result<Vec<usize>, record::Error> {
+        let extremes: Vec<&'static Dataset> = (self.drawn.iter().copied())
+            .filter(|dataset| dataset.drawn == Drawn::Extremes)
+            .collect();
+        let count = extremes.iter().map(|dataset| self.width(dataset)).sum();
+        rows_to_keep(self.times.len(), most, count, |rows| {
+            let mut columns = Vec::new();
+            for dataset in &extremes {
+                let table = self.file.table_rows(dataset, rows.clone())?;
+                columns.extend((0..table.width).map(|item| table.column(item)));
+            }
+            Ok(columns)
+        })
     }
 }
 
