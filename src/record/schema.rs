@@ -566,9 +566,9 @@ pub static DATASETS: [Dataset; 83] = {
         .drawn(Extremes),
         real(
             "inner_state",
-            "",
-            "what frictions and loads remember: the deflection of bristles (m), a dwell, the integral of \
-             a controller (rad)",
+            "1",
+            "what frictions and loads remember, over its own unit: deflection of bristles (m), dwell (1), \
+             integral of a controller (rad)",
             Source::Memory,
         ),
         real("event_time", "s", "time of the event", Event(at!(time))),
