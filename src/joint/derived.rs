@@ -125,12 +125,9 @@ impl<S: Scalar> Derived<S> {
         error: &mut [S],
     ) {
         let [.., prescribed] = self.prescribed(time);
-        let mut path = [Pose::fixed(); MOST_BODIES];
-        for (body, pose) in self.bodies().into_iter().zip(&mut path) {
-            if body != GROUND {
-                put_on_path(&poses[body], &motions[body], &accelerations[body], pose);
-            }
-        }
+        let [i, j, k] = self.bodies();
+        let on = |body: usize| on_path(&poses[body], &motions[body], &accelerations[body]);
+        let path = [on(i), on(j), on(k)];
         let says: [Dual<Dual<S>>; MOST_ROWS] = self.says(&path);
         let says = says.into_iter().take(self.rows());
         error.iter_mut().zip(says).for_each(|(error, says)| *error = says.eps.eps - prescribed);
@@ -150,23 +147,17 @@ impl<S: Scalar> Derived<S> {
     /// Φ_q where N coordinates can change.
     #[inline(always)]
     fn slopes_by<const N: usize>(&self, poses: &[Pose<S>], slopes: &mut [Blocks<S>]) {
-        // poses are large: filled where they stand, they are never copied
-        let mut seeded = [Pose::<Dual<S, [S; N]>>::fixed(); MOST_BODIES];
-        let mut places = [N; MOST_BODIES];
-        let mut first = 0;
-        for ((body, pose), place) in self.bodies().into_iter().zip(&mut seeded).zip(&mut places) {
-            if body == GROUND {
-                continue;
-            }
-            lift_into(&poses[body], pose);
-            pose.position.x.eps[first] = S::one();
-            pose.position.y.eps[first + 1] = S::one();
-            pose.angle.eps[first + 2] = S::one();
-            pose.cos.eps[first + 2] = -poses[body].sin;
-            pose.sin.eps[first + 2] = poses[body].cos;
-            *place = first;
-            first += 3;
-        }
+        let bodies = self.bodies();
+        let moves = bodies.map(|body| usize::from(body != GROUND));
+        // where the coordinates of each side begin among the N; behind them all if there are none
+        let first = |side: usize| match moves[side] {
+            0 => N,
+            _ => 3 * moves[..side].iter().sum::<usize>(),
+        };
+        let places = [first(0), first(1), first(2)];
+        let seed = |side: usize| seed(&poses[bodies[side]], places[side]);
+        // one by one, for poses are large: what builds an array from a function copies them
+        let seeded: [Pose<Dual<S, [S; N]>>; MOST_BODIES] = [seed(0), seed(1), seed(2)];
         let says = self.says(&seeded);
         for (row, says) in slopes.iter_mut().zip(&says) {
             for (block, first) in row.iter_mut().zip(places) {
@@ -217,31 +208,40 @@ impl<S: Scalar> Derived<S> {
         let accelerations = self.bodies().map(|body| constant(accelerations[body]));
         for place in self.places() {
             let poses = seeded(&here, place);
-            let mut path = [Pose::fixed(); MOST_BODIES];
-            for (side, pose) in path.iter_mut().enumerate() {
-                put_on_path(&poses[side], &motions[side], &accelerations[side], pose);
-            }
+            let on = |side: usize| on_path(&poses[side], &motions[side], &accelerations[side]);
+            let path = [on(0), on(1), on(2)];
             let says: [Dual<Dual<Dual<S>>>; MOST_ROWS] = self.says(&path);
             entries(place, says.map(|says| [says.eps.eps.eps, says.eps.re.eps + says.eps.re.eps]));
         }
     }
 }
 
-/// Puts a pose into one whose derivatives are zero.
+/// A pose with the derivatives by its coordinates, the first of which is number `first` of N; without any
+/// where there are not so many.
 #[inline(always)]
-fn lift_into<T: Scalar, E>(from: &Pose<T>, pose: &mut Pose<Dual<T, E>>) {
-    pose.position.x.re = from.position.x;
-    pose.position.y.re = from.position.y;
-    pose.angle.re = from.angle;
-    pose.cos.re = from.cos;
-    pose.sin.re = from.sin;
+fn seed<T: Scalar, const N: usize>(from: &Pose<T>, first: usize) -> Pose<Dual<T, [T; N]>> {
+    let (zero, one) = (T::zero(), T::one());
+    let by = |re: T, c: usize, slope: T| {
+        let part = |k: usize| if k == first + c { slope } else { zero };
+        Dual::new(re, std::array::from_fn(part))
+    };
+    Pose {
+        position: Vector::new(by(from.position.x, 0, one), by(from.position.y, 1, one)),
+        angle: by(from.angle, 2, one),
+        cos: by(from.cos, 2, -from.sin),
+        sin: by(from.sin, 2, from.cos),
+    }
 }
 
 /// A pose that stays.
 fn lifted<T: Scalar>(pose: &Pose<T>) -> Pose<Dual<T>> {
-    let mut stays = Pose::fixed();
-    lift_into(pose, &mut stays);
-    stays
+    let stays = Dual::from_re;
+    Pose {
+        position: Vector::new(stays(pose.position.x), stays(pose.position.y)),
+        angle: stays(pose.angle),
+        cos: stays(pose.cos),
+        sin: stays(pose.sin),
+    }
 }
 
 /// Poses with the derivative by one of their coordinates.
@@ -273,24 +273,21 @@ fn moving<T: Scalar>(pose: &Pose<T>, motion: &Motion<T>) -> Pose<Dual<T>> {
     }
 }
 
-/// Puts a pose with two derivatives by time into another.
+/// A pose with two derivatives by time.
 #[inline(always)]
-fn put_on_path<T: Scalar>(
-    from: &Pose<T>,
+fn on_path<T: Scalar>(
+    pose: &Pose<T>,
     motion: &Motion<T>,
     acceleration: &Motion<T>,
-    pose: &mut Pose<Dual<Dual<T>>>,
-) {
-    let put = |number: &mut Dual<Dual<T>>, x: T, v: T, a: T| {
-        (number.re.re, number.re.eps) = (x, v);
-        (number.eps.re, number.eps.eps) = (v, a);
-    };
-    let (at, v, a) = (from.position, motion.linear, acceleration.linear);
+) -> Pose<Dual<Dual<T>>> {
+    let second = |x: T, v: T, a: T| Dual::new(Dual::new(x, v), Dual::new(v, a));
+    let (at, v, a) = (pose.position, motion.linear, acceleration.linear);
     let (rate, bend) = (motion.angular, acceleration.angular);
-    let (cos, sin, square) = (from.cos, from.sin, rate * rate);
-    put(&mut pose.position.x, at.x, v.x, a.x);
-    put(&mut pose.position.y, at.y, v.y, a.y);
-    put(&mut pose.angle, from.angle, rate, bend);
-    put(&mut pose.cos, cos, -sin * rate, -sin * bend - cos * square);
-    put(&mut pose.sin, sin, cos * rate, cos * bend - sin * square);
+    let (cos, sin, square) = (pose.cos, pose.sin, rate * rate);
+    Pose {
+        position: Vector::new(second(at.x, v.x, a.x), second(at.y, v.y, a.y)),
+        angle: second(pose.angle, rate, bend),
+        cos: second(cos, -sin * rate, -sin * bend - cos * square),
+        sin: second(sin, cos * rate, cos * bend - sin * square),
+    }
 }

@@ -130,6 +130,7 @@ impl<S: Scalar> Relation<S> {
     }
 
     /// Φ of each row; see [`Holonomic::error`].
+    #[inline(always)]
     pub fn error<T: Lift<S>>(&self, poses: &[Pose<T>; MOST_BODIES]) -> [T; MOST_ROWS] {
         each_relation!(self, joint => joint.error(poses))
     }

@@ -37,6 +37,7 @@ impl<S: Scalar> Holonomic<S> for Revolute<S> {
         Revolute { pair: ends.pair }
     }
 
+    #[inline(always)]
     fn error<T: Lift<S>>(&self, poses: &[Pose<T>; MOST_BODIES]) -> [T; MOST_ROWS] {
         let gap = between(&self.pair, poses);
         [gap.x, gap.y, T::zero()]
