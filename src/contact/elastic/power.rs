@@ -47,6 +47,8 @@ fn material_where_it_is_used(values: &Values) -> Vec<(&'static str, String)> {
 
 /// The largest q for which contacts are followed in the q-th root of their depth.
 const LARGEST_DEGREE: u32 = 10;
+/// The most factors that a power is multiplied together of.
+const MOST_FACTORS: f64 = 100.0;
 
 /// The exponent n of the penetration; Hertz's 3/2 and whole ones need no power function.
 #[derive(Debug, Clone, Copy)]
@@ -83,7 +85,7 @@ impl<S: Scalar> Power<S> {
         // to rounding: in 71 digits 1.3333333333333333 is not four thirds
         let is_multiple = |q: u32| {
             let off = exponent * S::from_f64(f64::from(q)) - S::from_f64(multiple(q));
-            off.to_f64().abs() <= 4.0 * S::EPSILON * multiple(q)
+            multiple(q) <= MOST_FACTORS && off.to_f64().abs() <= 4.0 * S::EPSILON * multiple(q)
         };
         let fraction =
             (1..=LARGEST_DEGREE).find(|q| is_multiple(*q)).map(|q| (q, multiple(q) as u32));
@@ -163,6 +165,18 @@ impl<S: Scalar> ElasticLaw<S> for Power<S> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn exponents_without_sense_cost_no_more_than_others() {
+        // four thousand million factors were multiplied together, whatever the exponent was beyond that
+        for exponent in [101.0, 1e5, 4294967295.0, 9223372036854775807.0, 1e300] {
+            let law = Power::<f64>::with(2.0, exponent);
+            let (force, slope) = law.force(0.999);
+            assert_eq!(force, 2.0 * 0.999_f64.powf(exponent));
+            assert!((slope - exponent * force / 0.999).abs() <= 1e-12 * slope, "{exponent}");
+            assert!(law.force_from_root(0.999).is_none());
+        }
+    }
     use crate::scalar::F256;
 
     #[test]
