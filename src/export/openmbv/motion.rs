@@ -45,35 +45,18 @@ pub(super) fn write(
     let output = create(path).map_err(library)?;
     let mut written = Written::default();
     let track = Track { file, rows, times: file.times()? };
-    {
-        let bodies = output.create_group("bodies").map_err(library)?;
-        for body in &scene.bodies {
-            let motion = track.of_body(body)?;
-            put(&bodies, &body.name, &OF_BODY, &motion).map_err(library)?;
-            written.values(&format!("bodies/{}/data", body.name), &flat(&motion));
-        }
-        if !scene.springs.is_empty() {
-            let springs = output.create_group("springs").map_err(library)?;
-            for spring in &scene.springs {
-                let motion = track.of_spring(spring, scene.top())?;
-                put(&springs, &spring.name, &OF_SPRING, &motion).map_err(library)?;
-                written.values(&format!("springs/{}/data", spring.name), &flat(&motion));
-            }
-        }
-        let forces = output.create_group("forces").map_err(library)?;
-        for arrow in &scene.arrows {
-            let motion = track.of_arrow(arrow, scene.top())?;
-            put(&forces, &arrow.name, &OF_ARROW, &motion).map_err(library)?;
-            written.values(&format!("forces/{}/data", arrow.name), &flat(&motion));
-        }
-        if !scene.loads.is_empty() {
-            let loads = output.create_group("loads").map_err(library)?;
-            for load in &scene.loads {
-                let motion = track.of_load(load, scene.top())?;
-                put(&loads, &load.name, &OF_ARROW, &motion).map_err(library)?;
-                written.values(&format!("loads/{}/data", load.name), &flat(&motion));
-            }
-        }
+    let top = scene.top();
+    let bodies = scene.bodies.iter().map(|body| (&body.name, track.of_body(body)));
+    put_group(&output, &mut written, "bodies", &OF_BODY, bodies)?;
+    if !scene.springs.is_empty() {
+        let springs = scene.springs.iter().map(|one| (&one.name, track.of_spring(one, top)));
+        put_group(&output, &mut written, "springs", &OF_SPRING, springs)?;
+    }
+    let forces = scene.arrows.iter().map(|arrow| (&arrow.name, track.of_arrow(arrow, top)));
+    put_group(&output, &mut written, "forces", &OF_ARROW, forces)?;
+    if !scene.loads.is_empty() {
+        let loads = scene.loads.iter().map(|load| (&load.name, track.of_load(load, top)));
+        put_group(&output, &mut written, "loads", &OF_ARROW, loads)?;
     }
     output.flush().map_err(library)?;
     output.close().map_err(library)?;
@@ -126,6 +109,23 @@ fn create(path: &Path) -> hdf5::Result<File> {
         })
         .with_fcpl(|creation| creation.obj_track_times(false))
         .create(path)
+}
+
+/// Writes a group of things, one after the other, each by its name and its motion.
+fn put_group<'a>(
+    output: &File,
+    written: &mut Written,
+    name: &str,
+    labels: &[&str; 8],
+    motions: impl Iterator<Item = (&'a String, Result<Array2<f64>, WriteError>)>,
+) -> Result<(), WriteError> {
+    let group = output.create_group(name).map_err(library)?;
+    for (thing, motion) in motions {
+        let motion = motion?;
+        put(&group, thing, labels, &motion).map_err(library)?;
+        written.values(&format!("{name}/{thing}/data"), &flat(&motion));
+    }
+    Ok(())
 }
 
 fn put(group: &Group, name: &str, labels: &[&str; 8], motion: &Array2<f64>) -> hdf5::Result<()> {
